@@ -1,0 +1,16 @@
+"""Calls GLSL functions on numpy arrays and renders SHADERed projects, without a display or a GPU."""
+
+from .call import shader
+from .compare import assert_ulp, ulp_difference
+from .errors import CallError, GlslError, HarnessError, NativeError, ProjectError
+
+__all__ = [
+    "CallError",
+    "GlslError",
+    "HarnessError",
+    "NativeError",
+    "ProjectError",
+    "assert_ulp",
+    "shader",
+    "ulp_difference",
+]

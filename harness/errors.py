@@ -1,0 +1,35 @@
+"""The errors that a user's input can cause: each says what is wrong and, where it is known, in which file and line.
+
+Only the command line turns them into text and an exit code; everywhere else they are exceptions.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class HarnessError(Exception):
+    """Something in the input is at fault. ``str()`` is ``file:line: message``, as compilers print it."""
+
+    def __init__(self, message: str, file: str | Path | None = None, line: int | None = None):
+        self.message = message
+        self.file = None if file is None else str(file)
+        self.line = line
+        place = "".join(f"{part}:" for part in (self.file, line) if part is not None)
+        super().__init__(f"{place} {message}" if place else message)
+
+
+class GlslError(HarnessError):
+    """A shader does not compile or link, or an include is missing."""
+
+
+class ProjectError(HarnessError):
+    """A .sprj file is malformed, names what does not exist, or asks for what is not supported."""
+
+
+class CallError(HarnessError, TypeError):
+    """A GLSL function is called with arguments that do not fit, or does not exist."""
+
+
+class NativeError(HarnessError):
+    """The native library or the driver under it refuses; the message names the operation."""

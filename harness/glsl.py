@@ -1,0 +1,167 @@
+"""GLSL text: pastes includes, inserts macros, and keeps for every line of the result where it came from.
+
+What is done to the text is what SHADERed does before it hands a shader to the driver, so both see the same program.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from . import native
+from .errors import GlslError, NativeError
+from .native import Stage
+
+VERSION = "#version 330"  # given to files that state none: libraries, which are meant to be included
+
+# As SHADERed: in column 0, "x" and <x> alike, whatever follows the closing mark.
+_INCLUDE = re.compile(r'#include\s+(?:"([^"]+)"|<([^>]+)>)')
+_GLSLANG_LINE = re.compile(r"^(?:ERROR|WARNING): (?:\d+|[^:]*):(\d+): (.*)$")
+_DRIVER_LINE = re.compile(r"^\d+[:(](\d+)(?:\(\d+\)\s*:|\)\s*:|:)\s*(.*)$")
+
+ERRORS_SHOWN = 5  # of one compilation: what follows is mostly their consequence
+
+
+@dataclass(frozen=True)
+class Source:
+    """A shader as the compiler gets it. Line n of ``text`` (from 1) came from ``origins[n - 1]``, a (file, line)."""
+
+    path: str
+    text: str
+    origins: tuple[tuple[str, int], ...]
+    #: line of ``text`` -> what to say of the include that was not found there, should the compiler reach it
+    missing_includes: Mapping[int, str] = field(default_factory=dict)
+
+    def origin(self, line: int) -> tuple[str, int]:
+        """File and line that line ``line`` of ``text`` came from."""
+        return self.origins[min(max(line, 1), len(self.origins)) - 1]
+
+    def error(self, log: str) -> GlslError:
+        """The error that a compiler's log about ``text`` amounts to, in the user's files and lines."""
+        found = list(_messages(log))
+        for line, _ in found:
+            if line in self.missing_includes:
+                return GlslError(self.missing_includes[line], *self.origin(line))
+        if not found:
+            return GlslError(log.strip(), self.path)
+        lines = self.text.split("\n")
+        shown = []
+        for line, message in found[:ERRORS_SHOWN]:
+            file, number = self.origin(line)
+            quoted = lines[min(line, len(lines)) - 1].strip()
+            shown.append(f"{file}:{number}: {message}\n    {quoted}")
+        if len(found) > ERRORS_SHOWN:
+            shown.append(f"... and {len(found) - ERRORS_SHOWN} more")
+        file, number = self.origin(found[0][0])
+        return GlslError("\n".join(shown).removeprefix(f"{file}:{number}: "), file, number)
+
+
+def _messages(log: str) -> Iterator[tuple[int, str]]:
+    """(line of the text, message) of each error in a log of glslang or of a driver, each once."""
+    seen = set()
+    for text in log.splitlines():
+        match = _GLSLANG_LINE.match(text) or _DRIVER_LINE.match(text)
+        if not match or text.startswith("WARNING"):
+            continue
+        entry = int(match[1]), match[2].removeprefix("error: ").removeprefix("'' : ").strip()
+        if entry not in seen and "compilation terminated" not in entry[1]:
+            seen.add(entry)
+            yield entry
+
+
+def shown_path(path: str | Path) -> str:
+    """A path as a user likes to read it: relative where it lies below the current folder."""
+    relative = os.path.relpath(path)
+    return str(path) if relative.startswith("..") else relative
+
+
+def _read(path: Path) -> list[str]:
+    text = path.read_bytes().decode("utf-8-sig", errors="replace")
+    lines = text.replace("\r\n", "\n").split("\n")
+    return lines[:-1] if lines and not lines[-1] else lines
+
+
+def _paste(
+    path: Path, include_dirs: Sequence[Path], within: tuple[Path, ...]
+) -> Iterator[tuple[str, tuple[str, int], str | None]]:
+    """Lines of a file with its includes pasted: (text, origin, what to say if the compiler reaches this include)."""
+    included = set()
+    for number, text in enumerate(_read(path), 1):
+        origin = shown_path(path), number
+        match = _INCLUDE.match(text)
+        if not match:
+            yield text, origin, None
+            continue
+        name = match[1] or match[2]
+        target = next((d / name for d in include_dirs if (d / name).is_file()), None)
+        if target is None:
+            looked = ", ".join(shown_path(d) + os.sep for d in include_dirs)
+            yield text, origin, f'cannot find the included file "{name}" (looked in {looked})'
+        elif target in included or target.resolve() in within:
+            # SHADERed drops the second include of a file from the text of one; a circle would never end.
+            yield "", origin, None
+        else:
+            included.add(target)
+            yield from _paste(target, include_dirs, (*within, target.resolve()))
+
+
+def load(
+    path: str | Path,
+    defines: Mapping[str, str] | None = None,
+    include_dirs: Sequence[str | Path] = (),
+    *,
+    version: str | None = None,
+) -> Source:
+    """The shader in a file, ready for a compiler.
+
+    ``defines`` maps macro names (or ``F(x)``) to their text; they go in after the #version line. Includes are looked
+    for in ``include_dirs``, in order, never beside the including file. A file without #version gets ``version``; where
+    that is None, it is an error. GlslError when the file cannot be read or does not begin with #version.
+    """
+    path = Path(path)
+    try:
+        lines = list(_paste(path, [Path(d) for d in include_dirs], (path.resolve(),)))
+    except OSError as error:
+        raise GlslError(f"cannot read the shader: {error.strerror}", error.filename or path) from error
+    macros = [
+        (f"#define {name} {text}".rstrip(), ("macros", n), None)
+        for n, (name, text) in enumerate((defines or {}).items(), 1)
+    ]
+    if lines and lines[0][0].lstrip().startswith("#version"):
+        lines[1:1] = macros
+    elif version is None:
+        raise GlslError("a shader must begin with its #version, and nothing may stand above it", shown_path(path), 1)
+    else:
+        lines[:0] = [(version, (shown_path(path), 1), None), *macros]
+    return Source(
+        path=shown_path(path),
+        text="\n".join(text for text, _, _ in lines) + "\n",
+        origins=tuple(origin for _, origin, _ in lines),
+        missing_includes={n: what for n, (_, _, what) in enumerate(lines, 1) if what},
+    )
+
+
+def check(stage: Stage, source: Source, *, spirv: bool = False) -> None:
+    """Raises GlslError when glslang refuses the shader; ``spirv`` asks for the stricter rules of SHADERed's check."""
+    try:
+        native.glsl_check(stage, source.text, spirv=spirv)
+    except NativeError as error:
+        raise source.error(str(error)) from None
+
+
+def link(vertex: Source, fragment: Source) -> native.Program:
+    """The program of two stages, refused by glslang first and by the driver second. GlslError names file and line."""
+    check(Stage.VERTEX, vertex, spirv=True)
+    check(Stage.FRAGMENT, fragment, spirv=True)
+    try:
+        return native.Program(vertex.text, fragment.text)
+    except NativeError as error:
+        stage, _, log = str(error).partition(": ")
+        if stage == "vertex":
+            raise vertex.error(log) from None
+        if stage == "fragment":
+            raise fragment.error(log) from None
+        raise GlslError(f"does not link with {vertex.path}: {log.strip()}", fragment.path) from None

@@ -1,0 +1,155 @@
+/* glslang.c: checks, preprocesses and parses GLSL with glslang, through its C interface; needs no context. */
+#include "internal.h"
+
+#include <glslang/Include/glslang_c_interface.h>
+#include <glslang/Public/resource_limits_c.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+/* For a text without #version. */
+enum { DEFAULT_VERSION = 330 };
+
+/* Whose rules a text is held to. The difference is more than the rules: with SPIR-V as the target glslang
+ * defines GL_SPIRV, which no driver does, so a text on its way to the driver must not be preprocessed for
+ * SPIR-V. */
+typedef enum { FOR_DRIVER, FOR_SPIRV } target;
+
+/* A failure with glslang's log, without the blank lines around it. */
+static int fail_with_log(const char *operation, const char *log) {
+    log = log ? log + strspn(log, " \n") : "";
+    size_t length = strlen(log);
+    while (length > 0 && strchr(" \n", log[length - 1]))
+        --length;
+    /* By itself, so that each line begins as glslang's lines do. */
+    if (length > 0)
+        return hn_fail("%.*s", (int)length, log);
+    return hn_fail("%s: glslang failed and gave no reason", operation);
+}
+
+static int describe(const char *operation, hn_stage stage, const char *text, target rules,
+                    glslang_input_t *input) {
+    static int initialized;
+    if (!initialized && !glslang_initialize_process())
+        return hn_fail("%s: glslang does not start", operation);
+    initialized = 1;
+    if (!text)
+        return hn_fail("%s: no text", operation);
+    if (stage != HN_VERTEX && stage != HN_FRAGMENT)
+        return hn_fail("%s: no stage %d", operation, (int)stage);
+
+    *input = (glslang_input_t){
+        .language = GLSLANG_SOURCE_GLSL,
+        .stage = stage == HN_VERTEX ? GLSLANG_STAGE_VERTEX : GLSLANG_STAGE_FRAGMENT,
+        .client = rules == FOR_SPIRV ? GLSLANG_CLIENT_OPENGL : GLSLANG_CLIENT_NONE,
+        .client_version = GLSLANG_TARGET_OPENGL_450,
+        .target_language = rules == FOR_SPIRV ? GLSLANG_TARGET_SPV : GLSLANG_TARGET_NONE,
+        .target_language_version = GLSLANG_TARGET_SPV_1_0,
+        .code = text,
+        .default_version = DEFAULT_VERSION,
+        .default_profile = GLSLANG_NO_PROFILE,
+        /* Without cascading, glslang stops at the first error. */
+        .messages = GLSLANG_MSG_CASCADING_ERRORS_BIT | (rules == FOR_SPIRV ? GLSLANG_MSG_SPV_RULES_BIT : 0),
+        .resource = glslang_default_resource(),
+    };
+    return 0;
+}
+
+/* A shader after the preprocessor, or NULL. */
+static glslang_shader_t *preprocess(const char *operation, const glslang_input_t *input) {
+    glslang_shader_t *shader = glslang_shader_create(input);
+    if (!shader) {
+        hn_fail("%s: glslang makes no shader", operation);
+        return NULL;
+    }
+    /* Locations are given out as SHADERed has it done. Bindings are not: it refuses a uniform block without
+     * one. */
+    glslang_shader_set_options(shader, GLSLANG_SHADER_AUTO_MAP_LOCATIONS);
+    if (!glslang_shader_preprocess(shader, input)) {
+        fail_with_log(operation, glslang_shader_get_info_log(shader));
+        glslang_shader_delete(shader);
+        return NULL;
+    }
+    return shader;
+}
+
+/* A shader after the parser, or NULL. (The C interface parses what its preprocessor left.) */
+static glslang_shader_t *parse(const char *operation, const glslang_input_t *input) {
+    glslang_shader_t *shader = preprocess(operation, input);
+    if (shader && !glslang_shader_parse(shader, input)) {
+        fail_with_log(operation, glslang_shader_get_info_log(shader));
+        glslang_shader_delete(shader);
+        return NULL;
+    }
+    return shader;
+}
+
+static int generate_spirv(const char *operation, glslang_shader_t *shader, const glslang_input_t *input) {
+    glslang_program_t *program = glslang_program_create();
+    if (!program)
+        return hn_fail("%s: glslang makes no program", operation);
+    glslang_program_add_shader(program, shader);
+    int result = 0;
+    if (!glslang_program_link(program, (int)input->messages) || !glslang_program_map_io(program)) {
+        result = fail_with_log(operation, glslang_program_get_info_log(program));
+    } else {
+        glslang_program_SPIRV_generate(program, input->stage);
+        if (glslang_program_SPIRV_get_size(program) == 0)
+            result = fail_with_log(operation, glslang_program_SPIRV_get_messages(program));
+    }
+    glslang_program_delete(program);
+    return result;
+}
+
+int hn_glsl_check(hn_stage stage, const char *text, int spirv) {
+    const char *operation = "hn_glsl_check";
+    glslang_input_t input;
+    if (describe(operation, stage, text, spirv ? FOR_SPIRV : FOR_DRIVER, &input))
+        return -1;
+    glslang_shader_t *shader = parse(operation, &input);
+    if (!shader)
+        return -1;
+    int result = spirv ? generate_spirv(operation, shader, &input) : 0;
+    glslang_shader_delete(shader);
+    return result;
+}
+
+static char *copy(const char *operation, const char *text) {
+    size_t size = strlen(text) + 1;
+    char *result = malloc(size);
+    if (!result) {
+        hn_fail("%s: out of memory", operation);
+        return NULL;
+    }
+    return memcpy(result, text, size);
+}
+
+char *hn_glsl_preprocess(hn_stage stage, const char *text) {
+    const char *operation = "hn_glsl_preprocess";
+    glslang_input_t input;
+    if (describe(operation, stage, text, FOR_DRIVER, &input))
+        return NULL;
+    glslang_shader_t *shader = preprocess(operation, &input);
+    if (!shader)
+        return NULL;
+    /* glslang puts every token on its line of the input (and a macro's expansion where the call ends), so
+     * there is nothing to repair; the tests hold it to that. */
+    char *result = copy(operation, glslang_shader_get_preprocessed_code(shader));
+    glslang_shader_delete(shader);
+    return result;
+}
+
+char *hn_glsl_tree(hn_stage stage, const char *text) {
+    const char *operation = "hn_glsl_tree";
+    glslang_input_t input;
+    if (describe(operation, stage, text, FOR_DRIVER, &input))
+        return NULL;
+    input.messages |= GLSLANG_MSG_AST_BIT | GLSLANG_MSG_KEEP_UNCALLED_BIT;
+    glslang_shader_t *shader = parse(operation, &input);
+    if (!shader)
+        return NULL;
+    /* The parser writes the tree, before any linking could miss main() or drop a function. */
+    char *result = copy(operation, glslang_shader_get_info_debug_log(shader));
+    glslang_shader_delete(shader);
+    return result;
+}
