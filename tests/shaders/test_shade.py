@@ -1,0 +1,226 @@
+"""shade(): the model of the exercise, for every input."""
+
+from __future__ import annotations
+
+import mpmath as mp
+import numpy as np
+import pytest
+import reference
+from extremes import extremes
+
+from harness import assert_ulp
+
+U = 2.0**-24
+#: what float32 arithmetic may add, and how much of the vectors' own rounding
+ARITHMETIC = 2e-6
+FLOORS = 4
+
+
+def arguments(scenes):
+    """The scenes as the shader gets them: l, v, n and the material, float32."""
+    l, v, n = (np.array([reference.rounded(getattr(s, a)) for s in scenes]) for a in "lvn")  # noqa: E741
+    names = ("albedo", "metalness", "roughness")
+    material = {a: np.array([getattr(s.material, a) for s in scenes], np.float32) for a in names}
+    return l, v, n, material
+
+
+class Expectation:
+    """What the reference says of a scene, and how much of it rounding the vectors to float32 leaves."""
+
+    def __init__(self, scene):
+        self.scene = scene
+        self.want = reference.shade(scene.l, scene.v, scene.n, scene.material)
+        floats = [reference.vector(*map(float, reference.rounded(a))) for a in (scene.l, scene.v, scene.n)]
+        rounded = reference.shade(*floats, scene.material)
+        #: the relative change that rounding the vectors causes: what no arithmetic on float32 vectors can mend
+        self.floor = max((abs(r - w) / w for r, w in zip(rounded, self.want, strict=True) if w), default=mp.mpf(0))
+
+
+@pytest.fixture(scope="module")
+def expectations():
+    """The scenes, each in several orientations, which share the largest of their floors.
+
+    A single orientation's floor can be near 0 by luck, while the roundings inside the shader are of the same size as
+    those of its vectors and have other luck. Where n = +z, rounding keeps mirror images exact: it stands alone.
+    """
+    groups = reference.scenes()
+    found = [Expectation(s) for group in groups for s in group]
+    start = 0
+    for group in groups:
+        members = found[start : start + len(group)]
+        turned = [e for e in members if not e.scene.upright]
+        shared = max((e.floor for e in turned), default=mp.mpf(0))
+        for e in turned:
+            e.floor = shared
+        start += len(group)
+    return found
+
+
+def assert_within_the_floor(got, expectations, share=FLOORS):
+    for values, e in zip(got, expectations, strict=True):
+        for g, w in zip(values, e.want, strict=True):
+            assert np.isfinite(g), e.scene.name
+            tolerance = (ARITHMETIC + share * e.floor) * w
+            assert abs(mp.mpf(float(g)) - w) <= tolerance, f"{e.scene.name}: got {g}, want {float(w)}"
+
+
+def test_shade_is_the_model_at_the_extremes(library, mode, expectations):
+    got = library("brdf.glsl", mode).shade(*arguments([e.scene for e in expectations]))
+    assert_within_the_floor(got, expectations)
+
+
+def test_shade_is_the_model_in_the_middle(library, mode):
+    expectations = [Expectation(s) for s in reference.random_scenes(400, seed=7)]
+    got = library("brdf.glsl", mode).shade(*arguments([e.scene for e in expectations]))
+    assert_within_the_floor(got, expectations)
+
+
+def test_the_scenes_can_tell_a_worse_form(library, expectations):
+    """The exercise's own arrangement fails the same test: the tolerance is not too wide to notice."""
+    with pytest.raises(AssertionError):
+        got = library("brdf.glsl", "precise").shade_exercise(*arguments([e.scene for e in expectations]))
+        assert_within_the_floor(got, expectations)
+
+
+@pytest.mark.parametrize("function", ["shade", "shade_exercise"])
+def test_both_arrangements_agree_where_both_have_digits(library, mode, function):
+    """Roughness 0.5 and above, cosines 0.1 and above: 1 - (n.h)^2 (1 - alpha^2) is at least 1/16, its error 3 U."""
+    scenes = [s for s in reference.random_scenes(600, seed=11) if s.material.roughness >= 0.5]
+    scenes = [s for s in scenes if min(reference.dot(s.n, s.l), reference.dot(s.n, s.v)) >= 0.1]
+    assert len(scenes) > 40
+    expectations = [Expectation(s) for s in scenes]
+    got = library("brdf.glsl", mode)[function](*arguments(scenes))
+    # n.h of float32 vectors is off by 3 U, which goes with 2 (n.h) into d, and D with d^2
+    spread = 2 * (2 * 3 + 3) * U * 16
+    for values, e in zip(got, expectations, strict=True):
+        for g, w in zip(values, e.want, strict=True):
+            assert abs(mp.mpf(float(g)) - w) <= (ARITHMETIC + FLOORS * e.floor + spread) * w
+
+
+def test_each_step_of_the_rearrangement_is_an_identity():
+    """The steps in the comment of shade(), at 50 digits: what it computes is what the exercise writes."""
+    close = mp.mpf(10) ** -42
+    for s in reference.random_scenes(50, seed=3):
+        n, l, v = s.n, s.l, s.v  # noqa: E741
+        H = tuple(a + b for a, b in zip(l, v, strict=True))
+        HH = reference.dot(H, H)
+        h = reference.unit(H)
+        nH = reference.dot(n, l) + reference.dot(n, v)
+        nxH = reference.cross(n, H)
+        pp = reference.dot(nxH, nxH)
+        alpha = mp.mpf(s.material.roughness) ** 2
+        k = alpha * HH / (pp + alpha**2 * nH**2)
+        c = mp.sqrt(HH) / 2
+        x = 1 - c
+        assert abs(nH - reference.dot(n, H)) < close
+        assert abs(c - reference.dot(l, h)) < close
+        assert abs(pp + nH**2 - HH) < close
+        assert abs(k**2 / mp.pi / reference.D_GGX(reference.dot(n, h), alpha) - 1) < close / alpha**2
+        assert abs(c * ((1 + x) * (1 + x**2) + x**4) - (1 - x**5)) < close
+
+
+# ---- Every input -----------------------------------------------------------------------------------------------------
+
+RUNGS = [
+    {},
+    {"BRDF_V": "V_HAMMON"},
+    {"BRDF_F": "F_POW"},
+    {"BRDF_DIFFUSE": "DIFFUSE_LAMBERT"},
+    {"BRDF_D": "D_EXERCISE"},
+]
+
+
+@pytest.mark.parametrize("rung", RUNGS, ids=lambda r: "-".join(r.values()) or "default")
+def test_shade_is_finite_and_not_negative_on_every_rung(library, mode, rung):
+    got = library("brdf.glsl", mode, **rung).shade(*extremes(500_000, seed=len(str(rung))))
+    assert np.isfinite(got).all()
+    assert (got >= 0).all()
+
+
+@pytest.mark.parametrize(
+    ("cos_l", "cos_v"), [(-0.5, 0.5), (0.5, -0.5), (0.0, 0.5), (0.5, 0.0), (0.0, 0.0), (-1.0, 1.0)]
+)
+@pytest.mark.parametrize("roughness", [0.0, 0.3, 1.0])
+def test_back_side_and_horizon_are_black(library, mode, cos_l, cos_v, roughness):
+    l, v = reference.direction(cos_l, 0), reference.direction(cos_v, "0.5")  # noqa: E741
+    material = {"albedo": [1, 1, 1], "metalness": 0.5, "roughness": roughness}
+    got = library("brdf.glsl", mode).shade(reference.rounded(l), reference.rounded(v), [0, 0, 1], material)
+    assert (got == 0).all()
+
+
+def test_a_mirror_shows_its_diffuse_part_alone(library, mode):
+    """Roughness 0 with h = n: no highlight from a light without extent, (1 - F) albedo/pi NoL stays."""
+    albedo = np.float32([0.8, 0.4, 0.1])
+    got = library("brdf.glsl", mode).shade(
+        [0, 0, 1], [0, 0, 1], [0, 0, 1], {"albedo": albedo, "metalness": 0, "roughness": 0}
+    )
+    assert_ulp(got, (1 - 0.04) * albedo.astype(float) / np.pi, max_ulp=6)
+
+
+def test_metals_have_no_diffuse_part(library, mode):
+    """Far from the mirror direction a smooth metal is dark, whatever its colour."""
+    l, v = reference.rounded(reference.direction(0.9, 0)), reference.rounded(reference.direction(0.5, 0))  # noqa: E741
+    metal = library("brdf.glsl", mode).shade(l, v, [0, 0, 1], {"albedo": [1, 1, 1], "metalness": 1, "roughness": 0})
+    assert (metal == 0).all()
+
+
+def test_metals_reflect_their_own_colour(library, mode):
+    """At normal incidence F is F0, the albedo; with roughness 1 D V is 1/pi times 1/4."""
+    albedo = np.float32([1.0, 0.71, 0.29])
+    got = library("brdf.glsl", mode).shade(
+        [0, 0, 1], [0, 0, 1], [0, 0, 1], {"albedo": albedo, "metalness": 1, "roughness": 1}
+    )
+    assert_ulp(got, albedo.astype(float) / (4 * np.pi), max_ulp=10)
+
+
+def scattered_inputs(n, seed):
+    """Unit vectors above the horizon and a material; float32."""
+    random = np.random.default_rng(seed)
+
+    def hemisphere():
+        d = random.standard_normal((n, 3))
+        d[:, 2] = np.abs(d[:, 2])
+        return (d / np.linalg.norm(d, axis=1, keepdims=True)).astype(np.float32)
+
+    return hemisphere(), hemisphere(), random
+
+
+@pytest.mark.parametrize("albedo", [0.0, 0.8], ids=["specular", "whole"])
+def test_reciprocity(library, mode, albedo):
+    """f(l, v) = f(v, l), where shade = f NoL. H, n.H, |n x H| and V are sums of the same two terms in either order."""
+    l, v, random = scattered_inputs(20_000, seed=5)  # noqa: E741
+    material = {"albedo": [albedo] * 3, "metalness": 0, "roughness": random.random(len(l), np.float32)}
+    shade = library("brdf.glsl", mode).shade
+    forth = shade(l, v, [0, 0, 1], material).astype(float) * v[:, 2:]
+    back = shade(v, l, [0, 0, 1], material).astype(float) * l[:, 2:]
+    # NoL/pi, D V NoL, two products and a sum after it, on both sides
+    np.testing.assert_allclose(forth, back, rtol=2 * 8 * U, atol=0)
+
+
+def test_isotropy(library, mode):
+    """Turning everything changes nothing beyond what rounding the turned vectors does."""
+    groups = [g for g in reference.scenes() if g[0].material.roughness >= 0.2]
+    shade = library("brdf.glsl", mode).shade
+    for group in groups:
+        floors = [Expectation(s).floor for s in group]
+        got = shade(*arguments(group)).astype(float)
+        spread = got.max(0) - got.min(0)
+        assert (spread <= 2 * (ARITHMETIC + FLOORS * float(max(floors))) * got.max(0)).all(), group[0].name
+
+
+def test_the_same_whether_an_argument_is_one_or_many(library, mode):
+    """Nothing is folded because it is constant."""
+    l, v, random = scattered_inputs(1000, seed=9)  # noqa: E741
+    shade = library("brdf.glsl", mode).shade
+    one = shade(l, v, [0, 0, 1], {"albedo": [0.5, 0.2, 0.1], "metalness": 0.25, "roughness": 0.3})
+    many = shade(
+        l,
+        v,
+        np.tile(np.float32([0, 0, 1]), (1000, 1)),
+        {
+            "albedo": np.tile(np.float32([0.5, 0.2, 0.1]), (1000, 1)),
+            "metalness": np.full(1000, 0.25, np.float32),
+            "roughness": np.full(1000, 0.3, np.float32),
+        },
+    )
+    np.testing.assert_array_equal(one, many)
