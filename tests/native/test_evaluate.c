@@ -1,0 +1,68 @@
+/* test_evaluate.c: evaluation over arrays. */
+#include "check.h"
+
+#include <stdlib.h>
+
+#define INDEX                           \
+    "#version 330\n"                    \
+    "uniform int hn_width, hn_first;\n" \
+    "int i = 0;\n"                      \
+    "void find() { i = hn_first + int(gl_FragCoord.y) * hn_width + int(gl_FragCoord.x); }\n"
+
+/* Each element of every output is the function of the same element of the inputs, for any count. */
+static void test_elements(void) {
+    uint32_t program =
+        hn_program_create(hn_evaluate_vertex(), INDEX
+                          "uniform samplerBuffer x;\nuniform isamplerBuffer k;\n"
+                          "layout(location = 0) out vec4 a;\nlayout(location = 1) out vec4 b;\n"
+                          "void main() { find(); vec3 v = texelFetch(x, i).xyz; int n = texelFetch(k, i).x;\n"
+                          "a = vec4(v.z, v.y, v.x, 0.0); b = vec4(float(n)); }\n");
+    CHECK(program != 0);
+    static const size_t counts[] = {1, 2, 17, 1000, 1024 * 1024 + 5};
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
+        size_t n = counts[c];
+        float *x = malloc(n * 3 * sizeof *x), *a = malloc(n * 3 * sizeof *a), *b = malloc(n * sizeof *b);
+        int32_t *k = malloc(n * sizeof *k);
+        for (size_t i = 0; i < n; ++i) {
+            for (size_t j = 0; j < 3; ++j)
+                x[3 * i + j] = (float)(3 * i + j) * 0.5f;
+            k[i] = -(int32_t)i;
+        }
+        const hn_input inputs[] = {{"x", x, GL_FLOAT, 3, n}, {"k", k, GL_INT, 1, n}};
+        const hn_output outputs[] = {{a, 3}, {b, 1}};
+        CHECK(hn_evaluate(program, inputs, 2, outputs, 2, n) == 0);
+        size_t wrong = 0;
+        for (size_t i = 0; i < n; ++i)
+            wrong += a[3 * i] != x[3 * i + 2] || a[3 * i + 2] != x[3 * i] || b[i] != (float)k[i];
+        CHECK(wrong == 0);
+        free(x);
+        free(k);
+        free(a);
+        free(b);
+    }
+    hn_program_delete(program);
+}
+
+static void test_failures(void) {
+    uint32_t program = hn_program_create(hn_evaluate_vertex(),
+                                         INDEX "uniform samplerBuffer x;\nlayout(location = 0) out vec4 a;\n"
+                                               "void main() { find(); a = texelFetch(x, i); }\n");
+    float value = 5, result = 0;
+    const hn_input input = {"x", &value, GL_FLOAT, 1, 1}, wide = {"x", &value, GL_FLOAT, 5, 1};
+    const hn_output output = {&result, 1}, no_components = {&result, 0};
+    CHECK(hn_evaluate_limit() >= 65536);
+    CHECK(hn_evaluate(program, &input, 1, &output, 1, 0) == 0 && result == 0);
+    CHECK(hn_evaluate(program, &input, 1, &output, 1, 1) == 0 && result == 5);
+    CHECK_FAILS(hn_evaluate(program, &wide, 1, &output, 1, 1) == -1, "hn_evaluate: input x: 5 components");
+    CHECK_FAILS(hn_evaluate(program, &input, 1, &no_components, 1, 1) == -1,
+                "hn_evaluate: output 0: 0 components");
+    CHECK_FAILS(hn_evaluate(program, &input, 1000, &output, 1, 1) == -1, "1000 inputs");
+    CHECK_FAILS(hn_evaluate(program, &input, 1, &output, 0, 1) == -1, "0 outputs");
+    CHECK_FAILS(hn_evaluate(9999, &input, 1, &output, 1, 1) == -1, "program 9999");
+    hn_program_delete(program);
+}
+
+void test_evaluate(void) {
+    test_elements();
+    test_failures();
+}

@@ -1,0 +1,132 @@
+/* test_native.c: runs the tests of the C library; and those of the context and of failures themselves. */
+#include "check.h"
+
+#include <stdlib.h>
+#include <threads.h>
+
+int n_passed, n_failed;
+
+hn_mesh *cover(float z) {
+    const hn_vertex vertices[] = {{.position = {-1, -1, z}, .texcoord = {0, 0}},
+                                  {.position = {3, -1, z}, .texcoord = {2, 0}},
+                                  {.position = {-1, 3, z}, .texcoord = {0, 2}}};
+    return hn_mesh_create(vertices, 3, NULL, 0);
+}
+
+int draw_pixel(uint32_t program, float rgba[4]) {
+    const hn_field fields[] = {HN_POSITION};
+    hn_target *target = hn_target_create(1, 1, 1);
+    hn_mesh *mesh = cover(0);
+    int result = target && mesh ? hn_draw(target, program, mesh, fields, 1) : -1;
+    if (result == 0)
+        result = hn_target_read_floats(target, rgba);
+    hn_mesh_delete(mesh);
+    hn_target_delete(target);
+    return result;
+}
+
+/* Without a context everything that needs one says so, and deleting nothing is allowed. */
+static void test_no_context(void) {
+    const char *reason = "no context: call hn_context_open() first";
+    const hn_vertex triangle[3] = {{.position = {0}}};
+    const uint8_t pixel[4] = {0};
+    const float value = 0, black[4] = {0};
+    hn_variable variable;
+    CHECK_FAILS(hn_context_info() == NULL, reason);
+    CHECK_FAILS(hn_program_create("", "") == 0, reason);
+    CHECK_FAILS(hn_program_uniforms(1, &variable, 1) == -1, reason);
+    CHECK_FAILS(hn_program_attributes(1, &variable, 1) == -1, reason);
+    CHECK_FAILS(hn_program_uniform(1, 0, GL_FLOAT, 1, &value) == -1, reason);
+    CHECK_FAILS(hn_evaluate(1, NULL, 0, NULL, 0, 1) == -1, reason);
+    CHECK_FAILS(hn_evaluate_limit() == 0, reason);
+    CHECK_FAILS(hn_mesh_create(triangle, 3, NULL, 0) == NULL, reason);
+    CHECK_FAILS(hn_mesh_load("a.obj") == NULL, reason);
+    CHECK_FAILS(hn_texture_create(1, 1, pixel, GL_NEAREST, GL_NEAREST, GL_REPEAT, GL_REPEAT) == 0, reason);
+    CHECK_FAILS(hn_texture_bind(0, 0) == -1, reason);
+    CHECK_FAILS(hn_target_create(1, 1, 0) == NULL, reason);
+    CHECK_FAILS(hn_draw(NULL, 1, NULL, NULL, 0) == -1, reason);
+    CHECK_FAILS(hn_target_clear(NULL, black) == -1, reason);
+    CHECK_FAILS(hn_target_read_bytes(NULL, NULL) == -1, reason);
+    CHECK_FAILS(hn_target_read_floats(NULL, NULL) == -1, reason);
+    hn_program_delete(0);
+    hn_texture_delete(0);
+    hn_mesh_delete(NULL);
+    hn_target_delete(NULL);
+    hn_free(NULL);
+    hn_context_close();
+}
+
+static void test_open_and_close(void) {
+    CHECK(hn_context_open() == 0);
+    CHECK(hn_context_open() == 0);
+    const char *info = hn_context_info();
+    CHECK(info && strchr(info, '\n') && strchr(strchr(info, '\n') + 1, '\n'));
+    printf("%s\n", info ? info : "");
+
+    /* What a closed context leaves can be deleted, and is refused, not mistaken for the next context's. */
+    hn_mesh *old_mesh = cover(0);
+    hn_target *old_target = hn_target_create(1, 1, 0);
+    hn_context_close();
+    hn_context_close();
+    CHECK_FAILS(hn_target_create(1, 1, 0) == NULL, "no context");
+    CHECK(hn_context_open() == 0);
+    hn_mesh *mesh = cover(0);
+    hn_target *target = hn_target_create(1, 1, 0);
+    uint32_t program = hn_program_create(
+        POSITION_VERTEX, "#version 330\nout vec4 color;\nvoid main() { color = vec4(0.25); }\n");
+    const hn_field fields[] = {HN_POSITION};
+    const float black[4] = {0};
+    float rgba[4];
+    CHECK_FAILS(hn_target_clear(old_target, black) == -1, "the target's context was closed");
+    CHECK_FAILS(hn_draw(target, program, old_mesh, fields, 1) == -1, "the mesh's context was closed");
+    hn_mesh_delete(old_mesh);
+    hn_target_delete(old_target);
+    CHECK(hn_draw(target, program, mesh, fields, 1) == 0);
+    CHECK(hn_target_read_floats(target, rgba) == 0 && rgba[0] == 0.25f);
+    hn_mesh_delete(mesh);
+    hn_target_delete(target);
+    hn_program_delete(program);
+}
+
+static int use_elsewhere(void *unused) {
+    (void)unused;
+    CHECK_FAILS(!hn_target_create(1, 1, 0), "the context belongs to the thread that opened it");
+    CHECK_FAILS(hn_context_open() == -1, "the context belongs to the thread that opened it");
+    return 0;
+}
+
+/* In another thread GL calls would go nowhere without a word. */
+static void test_other_thread(void) {
+    thrd_t thread;
+    CHECK(thrd_create(&thread, use_elsewhere, NULL) == thrd_success &&
+          thrd_join(thread, NULL) == thrd_success);
+}
+
+void test_context(void) {
+    test_no_context();
+    test_open_and_close();
+    test_other_thread();
+}
+
+/* Leaks a mesh and a text, for proof that the checkers report what is ours, suppressions or not. */
+static int leak(void) {
+    if (hn_context_open() || !cover(0) || !hn_glsl_tree(HN_FRAGMENT, "#version 330\nfloat f;\n"))
+        return EXIT_FAILURE;
+    hn_context_close();
+    return EXIT_SUCCESS;
+}
+
+int main(int argc, char **argv) {
+    if (argc > 1 && strcmp(argv[1], "--leak") == 0)
+        return leak();
+    test_glsl(); /* first: it must do without a context */
+    test_context();
+    test_program();
+    test_mesh();
+    test_evaluate(); /* before the draws: they must not see the state it sets */
+    test_texture();
+    test_draw();
+    hn_context_close();
+    printf("%d passed, %d failed\n", n_passed, n_failed);
+    return n_failed > 0 ? EXIT_FAILURE : EXIT_SUCCESS;
+}
