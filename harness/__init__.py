@@ -3,6 +3,7 @@
 from .call import shader
 from .compare import assert_ulp, ulp_difference
 from .errors import CallError, GlslError, HarnessError, NativeError, ProjectError
+from .render import render, render_floats
 
 __all__ = [
     "CallError",
@@ -11,6 +12,8 @@ __all__ = [
     "NativeError",
     "ProjectError",
     "assert_ulp",
+    "render",
+    "render_floats",
     "shader",
     "ulp_difference",
 ]

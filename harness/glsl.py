@@ -96,7 +96,8 @@ def _paste(
             yield text, origin, None
             continue
         name = match[1] or match[2]
-        target = next((d / name for d in include_dirs if (d / name).is_file()), None)
+        # os.path: pathlib raises for a name that no file system takes
+        target = next((d / name for d in include_dirs if os.path.isfile(d / name)), None)
         if target is None:
             looked = ", ".join(shown_path(d) + os.sep for d in include_dirs)
             yield text, origin, f'cannot find the included file "{name}" (looked in {looked})'
@@ -156,6 +157,7 @@ def link(vertex: Source, fragment: Source) -> native.Program:
     """The program of two stages, refused by glslang first and by the driver second. GlslError names file and line."""
     check(Stage.VERTEX, vertex, spirv=True)
     check(Stage.FRAGMENT, fragment, spirv=True)
+    _check_varyings(vertex, fragment)
     try:
         return native.Program(vertex.text, fragment.text)
     except NativeError as error:
@@ -165,3 +167,19 @@ def link(vertex: Source, fragment: Source) -> native.Program:
         if stage == "fragment":
             raise fragment.error(log) from None
         raise GlslError(f"does not link with {vertex.path}: {log.strip()}", fragment.path) from None
+
+
+# In glslang's syntax tree: what a stage reads or declares, with the line where.
+_VARYING = re.compile(r"^0:(\S+) +'(\w+)' \( (?:\w+ )*?(in|out) ", re.MULTILINE)
+_INTERPOLATED = re.compile(r"'\w+' \( (?:smooth|flat|noperspective|centroid|sample) ")
+
+
+def _check_varyings(vertex: Source, fragment: Source) -> None:
+    """Refuses a fragment input that the vertex shader lacks: Mesa links it where it is read, and draws any colour."""
+    written = {m[2] for m in _VARYING.finditer(native.glsl_tree(Stage.VERTEX, vertex.text)) if m[3] == "out"}
+    body, _, _ = native.glsl_tree(Stage.FRAGMENT, fragment.text).partition("Linker Objects")
+    for line in body.splitlines():
+        match = _VARYING.match(line)
+        if match and match[3] == "in" and _INTERPOLATED.search(line) and match[2] not in written:
+            where = fragment.origin(int(match[1])) if match[1].isdigit() else (fragment.path, None)
+            raise GlslError(f'reads "{match[2]}", which {vertex.path} does not write', *where)

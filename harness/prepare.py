@@ -17,7 +17,7 @@ import numpy as np
 from . import glsl, native, shapes, textures
 from .errors import GlslError, NativeError, ProjectError
 from .native import Field, gl_enums
-from .project import Geometry, Item, Model, Pass, Project, Shader, TextureObject
+from .project import Geometry, Item, Model, Pass, Project, RenderState, Shader, TextureObject
 from .uniforms import PassUniforms
 
 #: macros that SHADERed 1.5.6 gives to every shader
@@ -58,6 +58,7 @@ class PreparedItem:
     item: Geometry | Model
     mesh: native.Mesh
     fields: tuple[Field, ...]
+    state: native.State
 
 
 @dataclass(frozen=True)
@@ -136,6 +137,13 @@ def _program(project: Project, shader_pass: Pass) -> tuple[glsl.Source, glsl.Sou
 # ---- Meshes ----------------------------------------------------------------------------------------------
 
 
+def _state(state: RenderState) -> native.State:
+    cull = gl_enums.GL_FRONT if state.cull_front else gl_enums.GL_BACK
+    return native.State(
+        cull if state.cull else gl_enums.GL_NONE, gl_enums.GL_CCW if state.ccw else gl_enums.GL_CW, state.depth_clamp
+    )
+
+
 class _Meshes:
     """Meshes of a project, each file and shape once."""
 
@@ -148,7 +156,7 @@ class _Meshes:
             fields = Field.POSITION, Field.TEXCOORD  # whatever the pass's input layout
         else:
             fields = tuple(Field[value.upper()] for value in shader_pass.layout)
-        return PreparedItem(item, self._mesh(shader_pass, item), fields)
+        return PreparedItem(item, self._mesh(shader_pass, item), fields, _state(item.state))
 
     def _mesh(self, shader_pass: Pass, item: Item) -> native.Mesh:
         if isinstance(item, Geometry):

@@ -100,11 +100,23 @@ class Shader:
     line: int
 
 
+@dataclass(frozen=True)
+class RenderState:
+    """How items are drawn: ``cull`` leaves out the back faces, or the front ones when ``cull_front``; ``ccw`` says
+    which faces are front."""
+
+    cull: bool = True
+    cull_front: bool = False
+    ccw: bool = True
+    depth_clamp: bool = False
+
+
 @dataclass(frozen=True, kw_only=True)
 class Item:
     """Something drawn. ``rotation`` is pitch, yaw and roll in radians: about x, y and z."""
 
     name: str
+    state: RenderState
     position: Vector3
     rotation: Vector3
     scale: Vector3

@@ -66,6 +66,6 @@ def draw(project: Project, passes: Sequence[PreparedPass], width: int, height: i
         prepared.uniforms.set_frame(frame)
         for item in prepared.items:
             prepared.uniforms.set_item(item.item, frame)
-            target.draw(prepared.program, item.mesh, item.fields)
+            target.draw(prepared.program, item.mesh, item.fields, item.state)
             prepared.uniforms.restore(item.item)
     return target

@@ -14,6 +14,7 @@ from .project import (
     Macro,
     Model,
     Pass,
+    RenderState,
     Shader,
     Variable,
 )
@@ -51,7 +52,7 @@ def read_pass(element: Element, render_textures: Collection[str]) -> Pass:
         vertex=vertex,
         fragment=fragment,
         layout=_layout(element, name),
-        items=tuple(_item(item, name) for item in items_of(element)),
+        items=_items(element, name),
         variables=variables,
         item_values=_item_values(element, name, variables),
         macros=_macros(element, name),
@@ -161,7 +162,47 @@ def _macros(element: Element, name: str) -> tuple[Macro, ...]:
     return tuple(macros.values())
 
 
-def _item(element: Element, pass_name: str) -> Geometry | Model:
+#: tags of a render state that are supported with one value alone, SHADERed's default
+_FIXED_STATES = {
+    "wireframe": "false",
+    "blend": "false",
+    "alpha2coverage": "false",
+    "depthtest": "true",
+    "depthmask": "true",
+    "stenciltest": "false",
+}
+
+
+def _items(element: Element, pass_name: str) -> tuple[Geometry | Model, ...]:
+    """The items that are drawn; a render state among them holds for those after it."""
+    state, found = RenderState(), []
+    for item in items_of(element):
+        if item.attributes.get("type") == "renderstate":
+            state = _render_state(item, pass_name)
+        else:
+            found.append(_item(item, pass_name, state))
+    return tuple(found)
+
+
+def _render_state(element: Element, pass_name: str) -> RenderState:
+    """A render state; tags that it leaves out take SHADERed's defaults, depth clamp among them, not the last state."""
+    what = f'render state "{element.attributes["name"]}" of pass "{pass_name}"'
+    for tag in element.children:
+        if tag.name in _FIXED_STATES and truth(tag.text) != truth(_FIXED_STATES[tag.name]):
+            raise tag.error(f"{what}: <{tag.name}>{tag.text}</{tag.name}> is not supported")
+        if tag.name == "depthfunc" and tag.text != "Less":
+            raise tag.error(f"{what}: <depthfunc>{tag.text}</depthfunc> is not supported")
+
+    def choice(tag: str, default: bool) -> bool:
+        found = element.all(tag)
+        return truth(found[-1].text) if found else default
+
+    return RenderState(
+        choice("cull", True), choice("cullfront", False), choice("ccw", True), choice("depthclamp", True)
+    )
+
+
+def _item(element: Element, pass_name: str, state: RenderState) -> Geometry | Model:
     name, kind = element.attributes["name"], element.attributes.get("type", "")
     what = f'item "{name}" of pass "{pass_name}"'
     if kind not in ("geometry", "model"):
@@ -177,6 +218,7 @@ def _item(element: Element, pass_name: str) -> Geometry | Model:
 
     common = {
         "name": name,
+        "state": state,
         "position": vector("x y z", 0.0),
         "rotation": vector("pitch yaw roll", 0.0),
         "scale": vector("scaleX scaleY scaleZ", 1.0),

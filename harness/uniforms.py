@@ -124,10 +124,8 @@ class PassUniforms:
 
     def _set(self, variable: Variable, value: np.ndarray) -> None:
         dtype = np.float32 if variable.type.name.startswith("float") else np.int32
-        # Of an array SHADERed sets the first element; the interface takes all of them.
-        data = np.zeros((self._program.uniforms[variable.name].size, value.size), dtype)
-        data[0] = value.reshape(-1)
-        self._program.set_uniform(variable.name, self._gl_types[variable.name], data)
+        # One element: of an array SHADERed sets the first alone.
+        self._program.set_uniform(variable.name, self._gl_types[variable.name], value.astype(dtype))
 
 
 def _constant(variable_type: VariableType, value: tuple[Number, ...]) -> np.ndarray:

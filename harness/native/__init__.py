@@ -46,6 +46,17 @@ class Variable(NamedTuple):
     location: int
 
 
+class State(NamedTuple):
+    """What a draw does with the faces that it meets, as hn_state; ``cull`` and ``front`` are GL's enumerations."""
+
+    cull: int = gl_enums.GL_BACK
+    front: int = gl_enums.GL_CCW
+    depth_clamp: bool = False
+
+
+START_OF_PASS = State()
+
+
 class _Variable(ctypes.Structure):
     _fields_ = [
         ("name", ctypes.c_char * 256),
@@ -67,6 +78,10 @@ class _Input(ctypes.Structure):
 
 class _Output(ctypes.Structure):
     _fields_ = [("data", ctypes.c_void_p), ("components", ctypes.c_uint32)]
+
+
+class _State(ctypes.Structure):
+    _fields_ = [("cull", ctypes.c_uint32), ("front", ctypes.c_uint32), ("depth_clamp", ctypes.c_int)]
 
 
 #: floats in an hn_vertex: position 3, normal 3, texcoord 2, tangent 3, bitangent 3, colour 4
@@ -106,7 +121,7 @@ _PROTOTYPES = {
     "hn_target_create": (_POINTER, [_INT, _INT, _INT]),
     "hn_target_delete": (None, [_POINTER]),
     "hn_target_clear": (_INT, [_POINTER, _POINTER]),
-    "hn_draw": (_INT, [_POINTER, _UINT, _POINTER, ctypes.POINTER(_INT), _INT]),
+    "hn_draw": (_INT, [_POINTER, _UINT, _POINTER, ctypes.POINTER(_INT), _INT, ctypes.POINTER(_State)]),
     "hn_target_read_bytes": (_INT, [_POINTER, _POINTER]),
     "hn_target_read_floats": (_INT, [_POINTER, _POINTER]),
 }
@@ -213,10 +228,14 @@ class Program:
         return {v.name.decode(): Variable(v.type, v.size, v.location) for v in found}
 
     def set_uniform(self, name: str, gl_type: int, values: np.ndarray) -> None:
-        """Sets the uniform ``name`` of GL type ``gl_type``; 4-byte values, matrices column by column."""
+        """Sets the uniform ``name`` of GL type ``gl_type``; 4-byte values, matrices column by column.
+
+        Of an array uniform as many elements are set as there are values for.
+        """
         values = np.ascontiguousarray(values)
         variable = self.uniforms[name]
-        _done(_library.hn_program_uniform(self._name, variable.location, gl_type, variable.size, values.ctypes.data))
+        count = values.size // gl_enums.COMPONENTS.get(gl_type, 1)
+        _done(_library.hn_program_uniform(self._name, variable.location, gl_type, count, values.ctypes.data))
 
     def evaluate(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[np.ndarray], count: int) -> None:
         """Runs the fragment stage for ``count`` elements.
@@ -304,10 +323,10 @@ class Target:
         color = np.asarray(rgba, np.float32)
         _done(_library.hn_target_clear(self._handle, color.ctypes.data))
 
-    def draw(self, program: Program, mesh: Mesh, fields: Sequence[Field]) -> None:
+    def draw(self, program: Program, mesh: Mesh, fields: Sequence[Field], state: State = START_OF_PASS) -> None:
         """Draws a mesh; attribute location k reads ``fields[k]``."""
         layout = (ctypes.c_int * len(fields))(*fields)
-        _done(_library.hn_draw(self._handle, program._name, mesh._handle, layout, len(layout)))
+        _done(_library.hn_draw(self._handle, program._name, mesh._handle, layout, len(layout), _State(*state)))
 
     def read_bytes(self) -> np.ndarray:
         """(h, w, 4) uint8, bottom row first: clamped to 0...1 and rounded by GL."""

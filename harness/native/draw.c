@@ -144,7 +144,28 @@ static int check_fields(const char *operation, const hn_field *fields, int n_fie
     return 0;
 }
 
-int hn_draw(hn_target *target, uint32_t program, const hn_mesh *mesh, const hn_field *fields, int n_fields) {
+static void set_state(const hn_state *state) {
+    static const hn_state at_start_of_pass = {GL_BACK, GL_CCW, 0};
+    if (!state)
+        state = &at_start_of_pass;
+    if (state->cull == GL_NONE) {
+        gl.Disable(GL_CULL_FACE);
+    } else {
+        gl.Enable(GL_CULL_FACE);
+        gl.CullFace(state->cull);
+    }
+    gl.FrontFace(state->front);
+    if (state->depth_clamp)
+        gl.Enable(GL_DEPTH_CLAMP);
+    else
+        gl.Disable(GL_DEPTH_CLAMP);
+    gl.Enable(GL_DEPTH_TEST);
+    gl.DepthFunc(GL_LESS);
+    gl.Disable(GL_BLEND);
+}
+
+int hn_draw(hn_target *target, uint32_t program, const hn_mesh *mesh, const hn_field *fields, int n_fields,
+            const hn_state *state) {
     const char *operation = "hn_draw";
     if (use_target(operation, target) || check_fields(operation, fields, n_fields))
         return -1;
@@ -159,12 +180,7 @@ int hn_draw(hn_target *target, uint32_t program, const hn_mesh *mesh, const hn_f
 
     write_everything();
     gl.Viewport(0, 0, target->width, target->height);
-    gl.Enable(GL_CULL_FACE);
-    gl.CullFace(GL_BACK);
-    gl.FrontFace(GL_CCW);
-    gl.Enable(GL_DEPTH_TEST);
-    gl.DepthFunc(GL_LESS);
-    gl.Disable(GL_BLEND);
+    set_state(state);
 
     /* One of its own, so that no draw sees the attributes of another. */
     GLuint vertex_array = 0;

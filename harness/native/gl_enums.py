@@ -1,5 +1,11 @@
 """The few OpenGL enumerations that pass through the native interface, by their GL names (values: Khronos' gl.xml)."""
 
+GL_NONE = 0
+GL_FRONT = 0x0404
+GL_BACK = 0x0405
+GL_CW = 0x0900
+GL_CCW = 0x0901
+
 GL_NEAREST = 0x2600
 GL_LINEAR = 0x2601
 GL_NEAREST_MIPMAP_NEAREST = 0x2700
@@ -27,6 +33,22 @@ GL_FLOAT_MAT2 = 0x8B5A
 GL_FLOAT_MAT3 = 0x8B5B
 GL_FLOAT_MAT4 = 0x8B5C
 GL_SAMPLER_2D = 0x8B5E
+
+#: GL type -> how many numbers a value of it has; 1 for those not here
+COMPONENTS = {
+    GL_FLOAT_VEC2: 2,
+    GL_FLOAT_VEC3: 3,
+    GL_FLOAT_VEC4: 4,
+    GL_INT_VEC2: 2,
+    GL_INT_VEC3: 3,
+    GL_INT_VEC4: 4,
+    GL_BOOL_VEC2: 2,
+    GL_BOOL_VEC3: 3,
+    GL_BOOL_VEC4: 4,
+    GL_FLOAT_MAT2: 4,
+    GL_FLOAT_MAT3: 9,
+    GL_FLOAT_MAT4: 16,
+}
 
 #: GL type of a uniform or attribute -> its name in GLSL, for messages.
 GLSL_TYPE_NAMES = {

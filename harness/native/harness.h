@@ -151,9 +151,17 @@ typedef struct hn_target hn_target;
 hn_target *hn_target_create(int width, int height, int alpha);
 void hn_target_delete(hn_target *target);
 int hn_target_clear(hn_target *target, const float rgba[4]);
-/* Draws a mesh as triangles; attribute location k reads fields[k]. Back faces culled, counter-clockwise is
- * front, depth test LESS, no blending: SHADERed's state at the start of a pass. */
-int hn_draw(hn_target *target, uint32_t program, const hn_mesh *mesh, const hn_field *fields, int n_fields);
+/* What a draw does with the faces that it meets. */
+typedef struct {
+    uint32_t cull;   /* GL_NONE, GL_BACK or GL_FRONT: the faces that are left out */
+    uint32_t front;  /* GL_CCW or GL_CW: how a front face's vertices go round */
+    int depth_clamp; /* 1: what lies before the near or beyond the far plane is drawn too */
+} hn_state;
+
+/* Draws a mesh as triangles; attribute location k reads fields[k]. Depth test LESS, no blending. `state` NULL is the
+ * state at the start of a pass of SHADERed's: back faces culled, counter-clockwise is front, no depth clamp. */
+int hn_draw(hn_target *target, uint32_t program, const hn_mesh *mesh, const hn_field *fields, int n_fields,
+            const hn_state *state);
 /* Reads the colour: width * height * 4 values, bottom row first; alpha is 1 without an alpha channel.
  * The bytes are clamped to 0...1 and rounded by GL; the floats are as drawn. */
 int hn_target_read_bytes(hn_target *target, uint8_t *rgba);

@@ -24,11 +24,10 @@ REFUSED = {
     "28-cubemap": "cube",
     "33-render-texture": "render texture",
     "34-render-texture-mrt": "render texture",
-    "35-state-cull": "renderstate",
-    "36-state-depth": "renderstate",
-    "37-state-blend": "renderstate",
+    "36-state-depth": "depth",
+    "37-state-blend": "depthtest",
     "38-instancing": "<instanced>",
-    "39-alpha-output": "renderstate",
+    "39-alpha-output": "blend",
     "40-geometry-shader": '"gs"',
     "42-topology-wireframe": "topology",
     "47-texture-hdr": ".hdr",
@@ -37,7 +36,6 @@ REFUSED = {
 NOT_EXACT = ["46-texture-jpeg"]
 #: broken projects that are drawn or refused for another reason
 NOT_YET = {
-    "11-varying-not-written": "glsl.link does not look for inputs that the vertex shader lacks",
     "17-endless-loop": "render states are refused before the loop is reached",
 }
 

@@ -6,7 +6,7 @@ import pytest
 from sprj_files import QUAD_ITEM, line_of, shader_pass, write_project
 
 from harness import ProjectError, sprj
-from harness.project import VARIABLE_TYPES, ArcballCamera, FirstPersonCamera, Geometry, Model
+from harness.project import VARIABLE_TYPES, ArcballCamera, FirstPersonCamera, Geometry, Model, RenderState
 
 CUBE = '<item name="Box" type="geometry"><type>Cube</type></item>'
 
@@ -168,6 +168,7 @@ def test_an_item_without_tags_has_the_defaults(tmp_path):
     item = sprj.read(write_project(tmp_path, shader_pass(items='<item name="I" type="geometry" />'))).passes[0].items[0]
     assert item == Geometry(
         name="I",
+        state=RenderState(),
         position=(0, 0, 0),
         rotation=(0, 0, 0),
         scale=(1, 1, 1),
@@ -175,6 +176,34 @@ def test_an_item_without_tags_has_the_defaults(tmp_path):
         shape="Cube",
         size=(1, 1, 1),
     )
+
+
+def test_a_render_state_holds_for_the_items_after_it(tmp_path):
+    items = (
+        '<item name="A" type="geometry" /><item name="S" type="renderstate"><cull>false</cull></item>'
+        '<item name="B" type="geometry" /><item name="C" type="geometry" />'
+    )
+    states = [i.state for i in sprj.read(write_project(tmp_path, shader_pass(items=items))).passes[0].items]
+    assert states == [RenderState(), *[RenderState(cull=False, depth_clamp=True)] * 2]
+
+
+def test_a_render_state_forgets_the_one_before(tmp_path):
+    """What it leaves out takes SHADERed's defaults: culling back, counter-clockwise, depth clamp on."""
+    items = (
+        '<item name="S" type="renderstate"><cullfront>true</cullfront><ccw>false</ccw></item>'
+        '<item name="T" type="renderstate" /><item name="B" type="geometry" />'
+    )
+    (item,) = sprj.read(write_project(tmp_path, shader_pass(items=items))).passes[0].items
+    assert item.state == RenderState(cull=True, cull_front=False, ccw=True, depth_clamp=True)
+
+
+def test_render_states_start_anew_in_each_pass(tmp_path):
+    first = shader_pass(
+        "First", items='<item name="S" type="renderstate"><cull>false</cull></item><item name="A" type="geometry" />'
+    )
+    second = shader_pass("Second", items='<item name="B" type="geometry" />')
+    project = sprj.read(write_project(tmp_path, first + second))
+    assert project.passes[1].items[0].state == RenderState()
 
 
 def test_pitch_yaw_and_roll_keep_their_axes(tmp_path):
@@ -290,7 +319,10 @@ NOT_SUPPORTED = {
         {"extra": variables('<variable type="float4x4" name="HERE" invert="true" />')},
         "inverting a constant",
     ),
-    "render state": ({"items": '<item name="HERE" type="renderstate" />'}, '"renderstate"'),
+    "render state": (
+        {"items": '<item name="S" type="renderstate"><depthtest name="HERE">false</depthtest></item>'},
+        "<depthtest>",
+    ),
     "vertex buffer": ({"items": '<item name="HERE" type="vertexbuffer" />'}, '"vertexbuffer"'),
     "instancing": (
         {"items": '<item name="HERE" type="geometry"><instanced>true</instanced></item>'},

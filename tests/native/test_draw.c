@@ -122,7 +122,8 @@ static void test_places(void) {
         const int height = 3;
         hn_target *target = hn_target_create(width, height, 0);
         uint8_t bytes[9 * 3 * 4];
-        CHECK(hn_draw(target, program, mesh, fields, 1) == 0 && hn_target_read_bytes(target, bytes) == 0);
+        CHECK(hn_draw(target, program, mesh, fields, 1, NULL) == 0 &&
+              hn_target_read_bytes(target, bytes) == 0);
         int right = 1;
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) {
@@ -152,19 +153,19 @@ static void test_state(void) {
     CHECK(hn_program_uniforms(program, &value, 1) == 1);
 
     hn_program_uniform(program, value.location, GL_FLOAT_VEC4, 1, red);
-    CHECK(hn_target_clear(target, black) == 0 && hn_draw(target, program, back, fields, 1) == 0);
+    CHECK(hn_target_clear(target, black) == 0 && hn_draw(target, program, back, fields, 1, NULL) == 0);
     CHECK(hn_target_read_floats(target, rgba) == 0 && memcmp(rgba, black, sizeof rgba) == 0);
-    CHECK(hn_draw(target, program, far, fields, 1) == 0);
+    CHECK(hn_draw(target, program, far, fields, 1, NULL) == 0);
     CHECK(hn_target_read_floats(target, rgba) == 0 && memcmp(rgba, red, sizeof rgba) == 0);
     hn_program_uniform(program, value.location, GL_FLOAT_VEC4, 1, green);
-    CHECK(hn_draw(target, program, far, fields, 1) == 0); /* equal depth is not less */
+    CHECK(hn_draw(target, program, far, fields, 1, NULL) == 0); /* equal depth is not less */
     CHECK(hn_target_read_floats(target, rgba) == 0 && memcmp(rgba, red, sizeof rgba) == 0);
-    CHECK(hn_draw(target, program, near, fields, 1) == 0); /* over it, alpha and all */
+    CHECK(hn_draw(target, program, near, fields, 1, NULL) == 0); /* over it, alpha and all */
     CHECK(hn_target_read_floats(target, rgba) == 0 && memcmp(rgba, green, sizeof rgba) == 0);
     hn_program_uniform(program, value.location, GL_FLOAT_VEC4, 1, red);
-    CHECK(hn_draw(target, program, far, fields, 1) == 0);
+    CHECK(hn_draw(target, program, far, fields, 1, NULL) == 0);
     CHECK(hn_target_read_floats(target, rgba) == 0 && memcmp(rgba, green, sizeof rgba) == 0);
-    CHECK(hn_target_clear(target, black) == 0 && hn_draw(target, program, far, fields, 1) == 0);
+    CHECK(hn_target_clear(target, black) == 0 && hn_draw(target, program, far, fields, 1, NULL) == 0);
     CHECK(hn_target_read_floats(target, rgba) == 0 && memcmp(rgba, red, sizeof rgba) == 0);
 
     hn_mesh_delete(near);
@@ -187,20 +188,20 @@ static void test_fields(void) {
     hn_target *target = hn_target_create(1, 1, 1);
     hn_mesh *mesh = cover(0);
     float rgba[4];
-    CHECK(hn_draw(target, with, mesh, six, 6) == 0 && hn_target_read_floats(target, rgba) == 0);
+    CHECK(hn_draw(target, with, mesh, six, 6, NULL) == 0 && hn_target_read_floats(target, rgba) == 0);
     CHECK(rgba[0] == 0.5f && rgba[1] == 0.5f);
-    CHECK(hn_draw(target, without, mesh, NULL, 0) == 0 && hn_target_read_floats(target, rgba) == 0);
+    CHECK(hn_draw(target, without, mesh, NULL, 0, NULL) == 0 && hn_target_read_floats(target, rgba) == 0);
     CHECK(rgba[0] == 0 && rgba[1] == 0 && rgba[2] == 0 && rgba[3] == 1);
 
     const hn_field unknown[] = {(hn_field)6};
-    CHECK_FAILS(hn_draw(target, with, mesh, unknown, 1) == -1, "field 0 is 6");
-    CHECK_FAILS(hn_draw(target, with, mesh, six, -1) == -1, "fields given");
-    CHECK_FAILS(hn_draw(target, with, mesh, six, 1000) == -1, "fields given");
-    CHECK_FAILS(hn_draw(target, with, mesh, NULL, 1) == -1, "fields given");
-    CHECK_FAILS(hn_draw(target, 0, mesh, six, 1) == -1, "hn_draw: no program");
-    CHECK_FAILS(hn_draw(target, 9999, mesh, six, 1) == -1, "hn_draw: program 9999: GL_INVALID_VALUE");
-    CHECK_FAILS(hn_draw(target, with, NULL, six, 1) == -1, "hn_draw: no mesh");
-    CHECK_FAILS(hn_draw(NULL, with, mesh, six, 1) == -1, "hn_draw: no target");
+    CHECK_FAILS(hn_draw(target, with, mesh, unknown, 1, NULL) == -1, "field 0 is 6");
+    CHECK_FAILS(hn_draw(target, with, mesh, six, -1, NULL) == -1, "fields given");
+    CHECK_FAILS(hn_draw(target, with, mesh, six, 1000, NULL) == -1, "fields given");
+    CHECK_FAILS(hn_draw(target, with, mesh, NULL, 1, NULL) == -1, "fields given");
+    CHECK_FAILS(hn_draw(target, 0, mesh, six, 1, NULL) == -1, "hn_draw: no program");
+    CHECK_FAILS(hn_draw(target, 9999, mesh, six, 1, NULL) == -1, "hn_draw: program 9999: GL_INVALID_VALUE");
+    CHECK_FAILS(hn_draw(target, with, NULL, six, 1, NULL) == -1, "hn_draw: no mesh");
+    CHECK_FAILS(hn_draw(NULL, with, mesh, six, 1, NULL) == -1, "hn_draw: no target");
     hn_mesh_delete(mesh);
     hn_target_delete(target);
     hn_program_delete(with);

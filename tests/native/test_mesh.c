@@ -54,7 +54,7 @@ static int draw_field(const hn_mesh *mesh, hn_field field, float rgba[4]) {
                           "#version 330\nin vec4 v;\nout vec4 color;\nvoid main() { color = v; }\n");
     hn_target *target = hn_target_create(1, 1, 1);
     const float blank[4] = {0};
-    int result = hn_target_clear(target, blank) || hn_draw(target, program, mesh, fields, 2) ||
+    int result = hn_target_clear(target, blank) || hn_draw(target, program, mesh, fields, 2, NULL) ||
                  hn_target_read_floats(target, rgba);
     hn_target_delete(target);
     hn_program_delete(program);

@@ -17,7 +17,7 @@ int draw_pixel(uint32_t program, float rgba[4]) {
     const hn_field fields[] = {HN_POSITION};
     hn_target *target = hn_target_create(1, 1, 1);
     hn_mesh *mesh = cover(0);
-    int result = target && mesh ? hn_draw(target, program, mesh, fields, 1) : -1;
+    int result = target && mesh ? hn_draw(target, program, mesh, fields, 1, NULL) : -1;
     if (result == 0)
         result = hn_target_read_floats(target, rgba);
     hn_mesh_delete(mesh);
@@ -44,7 +44,7 @@ static void test_no_context(void) {
     CHECK_FAILS(hn_texture_create(1, 1, pixel, GL_NEAREST, GL_NEAREST, GL_REPEAT, GL_REPEAT) == 0, reason);
     CHECK_FAILS(hn_texture_bind(0, 0) == -1, reason);
     CHECK_FAILS(hn_target_create(1, 1, 0) == NULL, reason);
-    CHECK_FAILS(hn_draw(NULL, 1, NULL, NULL, 0) == -1, reason);
+    CHECK_FAILS(hn_draw(NULL, 1, NULL, NULL, 0, NULL) == -1, reason);
     CHECK_FAILS(hn_target_clear(NULL, black) == -1, reason);
     CHECK_FAILS(hn_target_read_bytes(NULL, NULL) == -1, reason);
     CHECK_FAILS(hn_target_read_floats(NULL, NULL) == -1, reason);
@@ -78,10 +78,10 @@ static void test_open_and_close(void) {
     const float black[4] = {0};
     float rgba[4];
     CHECK_FAILS(hn_target_clear(old_target, black) == -1, "the target's context was closed");
-    CHECK_FAILS(hn_draw(target, program, old_mesh, fields, 1) == -1, "the mesh's context was closed");
+    CHECK_FAILS(hn_draw(target, program, old_mesh, fields, 1, NULL) == -1, "the mesh's context was closed");
     hn_mesh_delete(old_mesh);
     hn_target_delete(old_target);
-    CHECK(hn_draw(target, program, mesh, fields, 1) == 0);
+    CHECK(hn_draw(target, program, mesh, fields, 1, NULL) == 0);
     CHECK(hn_target_read_floats(target, rgba) == 0 && rgba[0] == 0.25f);
     hn_mesh_delete(mesh);
     hn_target_delete(target);
