@@ -34,6 +34,8 @@ class Source:
     origins: tuple[tuple[str, int], ...]
     #: line of ``text`` -> what to say of the include that was not found there, should the compiler reach it
     missing_includes: Mapping[int, str] = field(default_factory=dict)
+    #: the same lines as the user wrote them, where ``text`` was rewritten
+    written: str | None = None
 
     def origin(self, line: int) -> tuple[str, int]:
         """File and line that line ``line`` of ``text`` came from."""
@@ -47,7 +49,7 @@ class Source:
                 return GlslError(self.missing_includes[line], *self.origin(line))
         if not found:
             return GlslError(log.strip(), self.path)
-        lines = self.text.split("\n")
+        lines = (self.written or self.text).split("\n")
         shown = []
         for line, message in found[:ERRORS_SHOWN]:
             file, number = self.origin(line)

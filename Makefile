@@ -1,0 +1,84 @@
+# The two commands that a newcomer needs: make render, make test. Each installs what is missing, and nothing twice.
+SHELL := /bin/bash
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+NATIVE := $(wildcard harness/native/*.c harness/native/*.h) CMakeLists.txt
+SANITIZED := build/sanitize
+
+PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check
+EXTRA = import sys, tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"][sys.argv[1]], sep="\n")
+
+# The packages of one of pyproject.toml's extras, without building ours again.
+define install_extra
+@echo "Installing what $(1) needs into $(VENV) ..."
+@$(BIN)/python -c '$(EXTRA)' $(1) > $(VENV)/$(1).txt
+@$(PIP) -r $(VENV)/$(1).txt
+@touch $@
+endef
+
+.PHONY: help render test test-conformance test-sanitize bench lint format build models textures clean
+
+help: ## show this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
+
+render: $(VENV)/.harness ## the scene of project.sprj, to build/render.png
+	@mkdir -p build
+	$(BIN)/harness render project.sprj -o build/render.png --size 1920x1080 --supersample 2
+
+test: $(VENV)/.harness $(VENV)/.test ## all tests
+	$(BIN)/python -m pytest
+
+test-conformance: $(VENV)/.harness $(VENV)/.test ## the pictures of SHADERed itself, case by case
+	$(BIN)/python -m pytest -rA tests/harness/test_conformance.py
+
+test-sanitize: $(VENV)/bin/python ## the C library under AddressSanitizer and UBSan
+	cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_BUILD_TYPE=Debug -DHARNESS_TESTS=ON -DHARNESS_SANITIZE=ON
+	cmake --build $(SANITIZED)
+	ctest --test-dir $(SANITIZED) --output-on-failure
+
+bench: $(VENV)/.harness $(VENV)/.bench ## speed and memory, beside numpy, numba and moderngl
+	$(BIN)/python -m bench
+
+lint: $(VENV)/.lint ## format and static checks
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/clang-format --dry-run -Werror harness/native/*.[ch] tests/native/*.[ch]
+
+format: $(VENV)/.lint ## put the format right
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+	$(BIN)/clang-format -i harness/native/*.[ch] tests/native/*.[ch]
+
+build: $(VENV)/.harness ## the native library and the Python package
+
+models: $(VENV)/.harness ## make models/*.glb again
+	$(BIN)/python models/make_models.py
+
+textures: $(VENV)/.harness ## make textures/*.png again
+	$(BIN)/python textures/make_textures.py
+
+clean: ## remove all that was built or installed here
+	rm -rf build $(VENV) .pytest_cache .ruff_cache
+	find . -name __pycache__ -prune -exec rm -rf {} +
+
+# ---- What the commands need: each step leaves a file, and is done again only when what it depends on is newer --------
+
+$(VENV)/bin/python:
+	./setup/apt.sh
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.harness: pyproject.toml $(NATIVE) | $(VENV)/bin/python
+	@echo "Building the native library, and installing the package into $(VENV) ..."
+	@$(PIP) --editable .
+	@touch $@
+
+$(VENV)/.test: pyproject.toml | $(VENV)/.harness
+	$(call install_extra,test)
+
+$(VENV)/.bench: pyproject.toml | $(VENV)/.test
+	@./setup/apt.sh bench
+	$(call install_extra,bench)
+
+$(VENV)/.lint: pyproject.toml | $(VENV)/bin/python
+	$(call install_extra,lint)

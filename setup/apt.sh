@@ -1,0 +1,42 @@
+#!/bin/bash
+# Installs the Debian packages that are missing, saying what each is for. Usage: setup/apt.sh [bench]
+set -euo pipefail
+
+packages=(
+    "g++|compiles the native library"
+    "cmake|configures its build"
+    "ninja-build|runs its build"
+    "libosmesa6-dev|OpenGL in software, without a display or a GPU"
+    "libgl-dev|OpenGL's headers"
+    "glslang-dev|the GLSL compiler that SHADERed uses too"
+    "glslang-tools|without it glslang's build files refuse to load"
+    "spirv-tools|linked by glslang"
+    "libassimp-dev|reads models, as SHADERed does"
+    "python3-venv|keeps Python's packages in .venv"
+)
+if [ "${1:-}" = bench ]; then
+    packages+=("libegl1|moderngl's context, to compare with" "libgl1-mesa-dri|the driver under it")
+fi
+
+missing=()
+for entry in "${packages[@]}"; do
+    name=${entry%%|*}
+    if [ "$(dpkg-query -W -f '${db:Status-Status}' "$name" 2>/dev/null)" != installed ]; then
+        [ ${#missing[@]} -gt 0 ] || echo "These Debian packages are missing and will be installed:"
+        printf '  %-16s %s\n' "$name" "${entry#*|}"
+        missing+=("$name")
+    fi
+done
+[ ${#missing[@]} -gt 0 ] || exit 0
+
+as_root=()
+if [ "$(id -u)" != 0 ]; then
+    if ! command -v sudo >/dev/null; then
+        echo "Not root, and no sudo: as root, run: apt-get install ${missing[*]}" >&2
+        exit 1
+    fi
+    as_root=(sudo)
+fi
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -q
+"${as_root[@]}" apt-get install -q -y --no-install-recommends "${missing[@]}"
