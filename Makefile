@@ -64,11 +64,14 @@ clean: ## remove all that was built or installed here
 
 # ---- What the commands need: each step leaves a file, and is done again only when what it depends on is newer --------
 
-$(VENV)/bin/python:
-	./setup/apt.sh
+$(VENV)/.apt: setup/apt.sh
+	@./setup/apt.sh
+	@mkdir -p $(VENV) && touch $@
+
+$(VENV)/bin/python: | $(VENV)/.apt
 	$(PYTHON) -m venv $(VENV)
 
-$(VENV)/.harness: pyproject.toml $(NATIVE) | $(VENV)/bin/python
+$(VENV)/.harness: pyproject.toml $(NATIVE) $(VENV)/.apt | $(VENV)/bin/python
 	@echo "Building the native library, and installing the package into $(VENV) ..."
 	@$(PIP) --editable .
 	@touch $@

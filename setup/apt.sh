@@ -12,6 +12,7 @@ packages=(
     "glslang-tools|without it glslang's build files refuse to load"
     "spirv-tools|linked by glslang"
     "libassimp-dev|reads models, as SHADERed does"
+    "zlib1g-dev|linked by Assimp"
     "python3-venv|keeps Python's packages in .venv"
 )
 if [ "${1:-}" = bench ]; then
@@ -38,5 +39,5 @@ if [ "$(id -u)" != 0 ]; then
     as_root=(sudo)
 fi
 export DEBIAN_FRONTEND=noninteractive
-"${as_root[@]}" apt-get update -q
-"${as_root[@]}" apt-get install -q -y --no-install-recommends "${missing[@]}"
+"${as_root[@]}" apt-get update -q >/dev/null
+"${as_root[@]}" apt-get install -q -y --no-install-recommends "${missing[@]}" >/dev/null
