@@ -15,7 +15,7 @@
 #include <string.h>
 
 enum {
-    TILE_WIDTH = 1024,
+    TILE_WIDTH = 2048,
     TILE_HEIGHT = 1024,
     TILE_WIDTH_MIN = 16,
     TARGETS = 2,
