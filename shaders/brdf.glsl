@@ -150,7 +150,7 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 #endif
     float highlight = min(D * (V * NoL), 1e37);
 
-    float LoH = min(0.5 * sqrt(HH), 1.0);
+    float LoH = 0.5 * sqrt(HH);
     float w = schlick_weight(LoH);
     vec3 F0 = DIELECTRIC_F0 * (1.0 - m.metalness) + m.albedo * m.metalness;
     vec3 F = F0 + (1.0 - F0) * w;
