@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import keyword
 import math
 from collections import namedtuple
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +15,7 @@ import numpy as np
 
 from . import glsl, native, rewrite
 from .errors import CallError
-from .evaluation import MODES, Evaluation, Leaf
+from .evaluation import MODES, Evaluation, Leaf, leaves
 from .native import Stage, gl_enums
 from .signature import DTYPES, Array, Numeric, Parameter, Signature, Struct, Type, signatures
 
@@ -35,8 +38,9 @@ def shader(
         text = rewrite.isolate(native.glsl_preprocess(Stage.FRAGMENT, source.text))
     except native.NativeError as error:
         raise source.error(str(error)) from None
-    plain = glsl.Source(source.path, text, source.origins, source.missing_includes)
-    return Shader(plain, signatures(plain, rewrite.struct_names(text)), mode)
+    plain = replace(source, text=text, written=source.text)
+    functions = signatures(plain, rewrite.struct_names(text), rewrite.result_names(text))
+    return Shader(plain, functions, mode)
 
 
 class Shader:
@@ -108,7 +112,7 @@ class Function:
         return _evaluate(evaluation, arguments)
 
     def _overload(self, args: tuple, kwargs: dict) -> tuple[Signature, dict[str, list[np.ndarray]], dict]:
-        """The one overload that the arguments fit, the numbers of its parameters, and the names left over."""
+        """The overload that the arguments fit best, the numbers of its parameters, and the names left over."""
         fitting, errors = [], []
         for signature in self._overloads:
             try:
@@ -116,6 +120,9 @@ class Function:
                 fitting.append((signature, {p.name: _numbers(p, given[p.name]) for p in signature.inputs}, rest))
             except CallError as error:
                 errors.append(error)
+        if len(fitting) > 1:
+            misfits = [(len(rest), _conversions(signature, numbers)) for signature, numbers, rest in fitting]
+            fitting = [fit for fit, misfit in zip(fitting, misfits, strict=True) if misfit == min(misfits)]
         if len(fitting) == 1:
             return fitting[0]
         if len(self._overloads) == 1:
@@ -134,20 +141,30 @@ class Function:
             kind = gl_enums.GLSL_TYPE_NAMES.get(uniform.type, f"type 0x{uniform.type:x}")
             if kind not in _UNIFORM_TYPES:
                 raise CallError(f"{self.__name__} reads the uniform {kind} {name}, which cannot be given", *where)
+            if uniform.location < 0:
+                raise CallError(f"{self.__name__} reads {name} of a uniform block, which cannot be given", *where)
+            length = evaluation.array_length(name)
+            kind = _UNIFORM_TYPES[kind] if length is None else Array(_UNIFORM_TYPES[kind], length)
             if name not in given:
                 raise CallError(f"{self.__name__} reads the uniform {kind} {name}: give it by its name", *where)
-            parameter = Parameter(name, _UNIFORM_TYPES[kind], "in")
-            (value,) = _numbers(parameter, given[name])
-            if value.size != parameter.type.rows * parameter.type.columns:
+            number, shape = _dense(kind)
+            value = given[name]
+            if length is not None and np.ndim(value) == len(shape):
+                value = value[:length]  # the driver counts the elements only up to the last that is read
+            try:
+                value = _array(number, shape, value, name, kind)
+            except CallError as error:
+                raise CallError(f"the uniform {error.message}", *where) from None
+            if value.shape != shape:
                 raise CallError(f"uniform {name} is one {kind}, not an array of them", *where)
-            evaluation.set_uniform(name, value)
+            evaluation.set_uniform(name, value.astype(_GL_DTYPES[number.base], copy=False))
 
 
 _UNIFORM_TYPES = {
     str(kind): kind
     for kind in (
         *(Numeric(base, rows) for base in ("float", "int", "uint", "bool") for rows in (1, 2, 3, 4)),
-        *(Numeric("float", n, n) for n in (2, 3, 4)),
+        *(Numeric("float", rows, columns) for rows in (2, 3, 4) for columns in (2, 3, 4)),
     )
 }
 
@@ -178,32 +195,50 @@ def _numbers(parameter: Parameter, value: Any) -> list[np.ndarray]:
     return list(_leaf_arrays(parameter.type, value, parameter.name))
 
 
+def _conversions(signature: Signature, numbers: Mapping[str, list[np.ndarray]]) -> int:
+    """How many leaves of the arguments are not of the parameter's own base type."""
+    return sum(
+        array.dtype.kind != np.dtype(DTYPES[leaf.type.base]).kind
+        for p in signature.inputs
+        for leaf, array in zip(leaves(p.type), numbers[p.name], strict=True)
+    )
+
+
+def _dense(kind: Type) -> tuple[Numeric, tuple[int, ...]] | None:
+    """The numbers and the shape of a type that is one array in numpy; None for what holds a structure."""
+    if isinstance(kind, Array) and (inner := _dense(kind.element)):
+        return inner[0], (kind.length, *inner[1])
+    return (kind, kind.shape) if isinstance(kind, Numeric) and kind.base in DTYPES else None
+
+
 def _leaf_arrays(kind: Type, value: Any, name: str):
     if isinstance(kind, Struct):
-        members = value._asdict() if hasattr(value, "_asdict") else value
         wanted = [member for member, _ in kind.members]
+        members = value._asdict() if hasattr(value, "_asdict") else value
+        if getattr(value, "_fields", None) == _tuple_type(str(kind), tuple(wanted))._fields:
+            members = dict(zip(wanted, value, strict=True))
         if not isinstance(members, Mapping) or set(members) != set(wanted):
             got = ", ".join(map(str, members)) if isinstance(members, Mapping) else type(value).__name__
             raise CallError(f"{name} is a {kind}: a dict of {', '.join(wanted)}, got {got}")
         for member, inner in kind.members:
             yield from _leaf_arrays(inner, members[member], f"{name}.{member}")
-    elif isinstance(kind, Array) and not isinstance(kind.element, Numeric):
-        if len(value) != kind.length:
-            raise CallError(f"{name} is a {kind}: {kind.length} values, got {len(value)}")
+    elif dense := _dense(kind):
+        whole = _array(*dense, value, name, kind)
+        batch = whole.ndim - len(dense[1])
+        for place in np.ndindex(dense[1][: len(dense[1]) - len(dense[0].shape)]):
+            yield whole[(slice(None),) * batch + place]
+    elif isinstance(kind, Array):
+        if not isinstance(value, Sequence) or len(value) != kind.length:
+            got = len(value) if isinstance(value, Sequence) else type(value).__name__
+            raise CallError(f"{name} is a {kind}: {kind.length} values, got {got}")
         for k in range(kind.length):
             yield from _leaf_arrays(kind.element, value[k], f"{name}[{k}]")
-    elif isinstance(kind, Array):
-        whole = _array(kind.element, (kind.length, *kind.element.shape), value, name, kind)
-        for k in range(kind.length):
-            yield whole[(..., k) + (slice(None),) * len(kind.element.shape)]
-    elif isinstance(kind, Numeric):
-        yield _array(kind, kind.shape, value, name, kind)
     else:
         raise CallError(f"{name} is a {kind}, which cannot be given as an array")
 
 
 def _array(number: Numeric, shape: tuple[int, ...], value: Any, name: str, kind: Type) -> np.ndarray:
-    """A numeric argument as an array of GL's 4-byte type whose last dimensions are ``shape``."""
+    """A numeric argument as an array whose last dimensions are ``shape`` and whose numbers the type can hold."""
     try:
         array = np.asarray(value)
     except ValueError as error:
@@ -214,13 +249,11 @@ def _array(number: Numeric, shape: tuple[int, ...], value: Any, name: str, kind:
     if len(shape) > array.ndim or array.shape[array.ndim - len(shape) :] != shape:
         dimensions = ", ".join(["...", *map(str, shape)])
         raise CallError(f"{name} is a {kind}: an array of shape ({dimensions}), got {array.shape}")
-    dtype = _GL_DTYPES[number.base]
     if number.base in ("int", "uint") and array.size:
-        limits = np.iinfo(dtype)
+        limits = np.iinfo(DTYPES[number.base])
         if array.min() < limits.min or array.max() > limits.max:
             raise CallError(f"{name} is a {kind}: {limits.min} ... {limits.max}, got a number beyond")
-    with np.errstate(over="ignore"):  # beyond float32 is Inf, as in GLSL
-        return array.astype(dtype, copy=False)
+    return array
 
 
 def _evaluate(evaluation: Evaluation, arguments: dict[str, list[np.ndarray]]):
@@ -238,10 +271,13 @@ def _evaluate(evaluation: Evaluation, arguments: dict[str, list[np.ndarray]]):
             for name, buffers in evaluation.inputs
             for (_, leaf), array in zip(buffers, arguments[name], strict=True)
         )
-        raise CallError(f"the arguments do not broadcast: {shapes}; it is {evaluation.signature}") from None
+        message = f"the arguments do not broadcast: {shapes}; it is {evaluation.signature}"
+        raise CallError(message, *evaluation.signature.origin) from None
     count = math.prod(batch)
     flat = {}
     for buffer, leaf, array, own in parts:
+        with np.errstate(over="ignore"):  # beyond float32 is Inf, as in GLSL
+            array = array.astype(leaf.dtype, copy=False)
         if math.prod(own) != 1 and own != batch:
             array = np.broadcast_to(array, batch + leaf.type.shape)
         flat[buffer] = np.ascontiguousarray(array).reshape(-1, leaf.size)
@@ -262,12 +298,13 @@ def _shaped(kind: Type, values, batch: tuple[int, ...]):
         return _tuple_type(str(kind), tuple(name for name, _ in kind.members))(*members)
     if isinstance(kind, Array):
         elements = [_shaped(kind.element, values, batch) for _ in range(kind.length)]
-        numeric = isinstance(kind.element, Numeric)
-        return np.stack(elements, axis=len(batch)) if numeric else tuple(elements)
+        return np.stack(elements, axis=len(batch)) if _dense(kind) else tuple(elements)
     value = next(values).reshape(batch + kind.shape)
     value = value.astype(np.bool_) if kind.base == "bool" else value
     return value if value.ndim else value[()]
 
 
+@cache  # to make a class takes longer than to evaluate a small batch
 def _tuple_type(name: str, fields: tuple[str, ...]) -> type:
-    return namedtuple(name, fields, rename=True)
+    """A named tuple. What Python takes for no name becomes one: that of the type gets a _, of a field its place."""
+    return namedtuple(name + "_" * keyword.iskeyword(name), fields, rename=True)

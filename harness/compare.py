@@ -13,7 +13,9 @@ def ulp_difference(got: np.ndarray, want: np.ndarray) -> np.ndarray:
     """
     got = np.asarray(got, np.float64)
     want = np.asarray(want, np.float64)
-    spacing = np.spacing(np.abs(want.astype(np.float32))).astype(np.float64)
+    # |want| is in [2^(exponent - 1), 2^exponent), where floats are 2^(exponent - 24) apart, but never less than 2^-149
+    _, exponent = np.frexp(np.where(np.isfinite(want), np.maximum(np.abs(want), 2.0**-149), 1.0))
+    spacing = np.ldexp(1.0, np.maximum(exponent - 24, -149))
     with np.errstate(invalid="ignore", over="ignore"):
         ulps = np.abs(got - want) / spacing
     same = (got == want) | (np.isnan(got) & np.isnan(want))

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from . import native, rewrite
-from .errors import CallError, NativeError
+from .errors import CallError, GlslError, NativeError
 from .glsl import Source
 from .native import gl_enums
 from .signature import DTYPES, VOID, Array, Numeric, Opaque, Signature, Struct, Type
@@ -22,8 +22,10 @@ MODES = {
     "as-written": "the source as it stands: the driver may rewrite its arithmetic",
     "precise": "every operation as written, in the order written",
 }
-PRECISE_VERSION = "#version 400"  # the first with `precise`
+VERSION = 330  # the first that the test fragment can be written in
+PRECISE_VERSION = 400  # the first with `precise`
 
+_FIRST = "[0]"
 _SAMPLERS = {
     "float": "samplerBuffer",
     "int": "isamplerBuffer",
@@ -84,7 +86,8 @@ def _order(kind: Numeric) -> list[int]:
 def _fetch(leaf: Leaf, buffer: str, target: str) -> str:
     """GLSL that reads one value of a leaf from its buffer. The batch's end and single values repeat the last one."""
     vector = {"float": "vec4", "int": "ivec4"}.get(leaf.type.base, "uvec4")
-    texel = f"min(hn_i, textureSize({buffer}) / {leaf.texels} - 1) * {leaf.texels}"
+    last = f"textureSize({buffer}) / {leaf.texels} - 1"
+    texel = f"(hn_i < {last} ? hn_i : {last}) * {leaf.texels}"  # not min(): a shader may have one of its own
     fetched = [f"{vector} t{k} = texelFetch({buffer}, e + {k});" for k in range(leaf.texels)]
     parts = [f"t{j // leaf.components}[{j % leaf.components}]" for j in _order(leaf.type)]
     if leaf.type.base == "bool":
@@ -101,15 +104,31 @@ def _numbers(leaf: Leaf, value: str) -> list[str]:
     return [bits.format(f"{value}[{r}]") for r in range(kind.rows)] if kind.rows > 1 else [bits.format(value)]
 
 
+def _at_least(version: int, text: str) -> str:
+    """The text, its #version raised where it is lower."""
+    stated, _, rest = text.partition("\n")
+    words = stated.split()
+    if int(words[1]) < version:
+        words[1] = str(version)
+    return f"{' '.join(words)}\n{rest}"
+
+
 class Evaluation:
     """One GLSL function, compiled in one mode: ``run`` takes flat arrays and gives flat arrays."""
 
     def __init__(self, source: Source, signature: Signature, mode: str):
+        stated = source.text.partition("\n")[0].split()  # "#version", number, profile
+        if int(stated[1]) < VERSION or "es" in stated:
+            raise GlslError(f"{' '.join(stated)}: functions can be called from {VERSION} on", *source.origin(1))
         self.signature = signature
-        self.inputs = [
-            (p.name, [(f"hn_in_{p.name}_{k}", leaf) for k, leaf in enumerate(leaves(p.type))]) for p in signature.inputs
-        ]
-        self.outputs = [(name, list(leaves(kind))) for name, kind in signature.outputs]
+        try:
+            self.inputs = [
+                (p.name, [(f"hn_in{n}_{k}", leaf) for k, leaf in enumerate(leaves(p.type))])
+                for n, p in enumerate(signature.inputs)
+            ]
+            self.outputs = [(name, list(leaves(kind))) for name, kind in signature.outputs]
+        except CallError as error:
+            raise CallError(f"{error.message}; it is {signature}", *signature.origin) from None
         widths = [
             min(OUTPUT_FLOATS, leaf.size - start)
             for _, parts in self.outputs
@@ -123,43 +142,53 @@ class Evaluation:
         self._widths = widths
         text = source.text.rstrip("\n") + "\n" + self._main()
         if mode == "precise":
-            version, _, rest = rewrite.make_precise(text).partition("\n")
-            version = PRECISE_VERSION if version.split()[1] < "400" else version
-            text = f"{version}\n{rest}"
+            text = _at_least(PRECISE_VERSION, rewrite.make_precise(text))
         try:
             native.open_context()
             self._program = native.Program(native.evaluate_vertex(), text)
         except NativeError as error:
             stage, _, log = str(error).partition(": ")
             raise source.error(log if stage in ("vertex", "fragment") else str(error)) from None
-        self.uniforms = {n: u for n, u in self._program.uniforms.items() if not n.startswith("hn_")}
+        #: those that the function reads; of an array the first element stands for all
+        self.uniforms = {
+            n.removesuffix(_FIRST): u for n, u in self._program.uniforms.items() if not n.startswith("hn_")
+        }
 
     def _main(self) -> str:
         """The rest of the shader: buffers, outputs, and a main() that calls the function once."""
+        parameters = [(f"hn_arg{n}", p) for n, p in enumerate(self.signature.parameters)]
+        variables = {p.name: variable for variable, p in parameters}
         declarations = ["uniform int hn_first;", "uniform int hn_width;"]
-        body = ["int hn_i = hn_first + int(gl_FragCoord.y) * hn_width + int(gl_FragCoord.x);"]
+        body = [f"{p.type} {variable};" for variable, p in parameters]
+        body += ["int hn_i = hn_first + int(gl_FragCoord.y) * hn_width + int(gl_FragCoord.x);"]
         for name, buffers in self.inputs:
             declarations += [f"uniform {_SAMPLERS[leaf.type.base]} {buffer};" for buffer, leaf in buffers]
-            body += [_fetch(leaf, buffer, f"hn_{name}{leaf.path}") for buffer, leaf in buffers]
-        variables = [f"{p.type} hn_{p.name};" for p in self.signature.parameters]
-        call = f"{self.signature.name}({', '.join('hn_' + p.name for p in self.signature.parameters)});"
+            body += [_fetch(leaf, buffer, f"{variables[name]}{leaf.path}") for buffer, leaf in buffers]
+        call = f"{self.signature.name}({', '.join(variables.values())});"
         body += [call if self.signature.result == VOID else f"{self.signature.result} hn_result = {call}"]
+        results = [] if self.signature.result == VOID else ["hn_result"]
+        results += [variable for variable, p in parameters if p.direction != "in"]
 
         location = 0
-        for name, parts in self.outputs:
+        for result, (_, parts) in zip(results, self.outputs, strict=True):
             for leaf in parts:
-                numbers = _numbers(leaf, f"hn_{name}{leaf.path}")
+                numbers = _numbers(leaf, f"{result}{leaf.path}")
                 for start in range(0, len(numbers), OUTPUT_FLOATS):
                     four = (numbers[start : start + OUTPUT_FLOATS] + ["0.0"] * 3)[:OUTPUT_FLOATS]
                     declarations.append(f"layout(location = {location}) out vec4 hn_out_{location};")
                     body.append(f"hn_out_{location} = vec4({', '.join(four)});")
                     location += 1
-        return "\n".join([*declarations, "void main()", "{", *variables, *body, "}", ""])
+        return "\n".join([*declarations, "void main()", "{", *body, "}", ""])
+
+    def array_length(self, name: str) -> int | None:
+        """How many elements of a uniform the function reads; None where it is no array."""
+        return self.uniforms[name].size if name not in self._program.uniforms else None
 
     def set_uniform(self, name: str, value: np.ndarray) -> None:
-        """Sets a numeric uniform that the function reads; ``value`` in numpy's order."""
+        """Sets a numeric uniform that the function reads; ``value`` in numpy's order, an array's elements first."""
         kind = self.uniforms[name].type
-        if kind in (gl_enums.GL_FLOAT_MAT2, gl_enums.GL_FLOAT_MAT3, gl_enums.GL_FLOAT_MAT4):
+        name = name if name in self._program.uniforms else name + _FIRST
+        if gl_enums.GLSL_TYPE_NAMES[kind].startswith("mat"):
             value = value.swapaxes(-1, -2)
         self._program.set_uniform(name, kind, value)
 

@@ -47,6 +47,7 @@ class Source:
         for line, _ in found:
             if line in self.missing_includes:
                 return GlslError(self.missing_includes[line], *self.origin(line))
+        found = [(line, message) for line, message in found if line > 0]  # 0: a linker's, of no line
         if not found:
             return GlslError(log.strip(), self.path)
         lines = (self.written or self.text).split("\n")
@@ -66,7 +67,7 @@ def _messages(log: str) -> Iterator[tuple[int, str]]:
     seen = set()
     for text in log.splitlines():
         match = _GLSLANG_LINE.match(text) or _DRIVER_LINE.match(text)
-        if not match or text.startswith("WARNING"):
+        if not match or text.startswith("WARNING") or match[2].startswith("warning"):
             continue
         entry = int(match[1]), match[2].removeprefix("error: ").removeprefix("'' : ").strip()
         if entry not in seen and "compilation terminated" not in entry[1]:
@@ -102,7 +103,8 @@ def _paste(
         target = next((d / name for d in include_dirs if os.path.isfile(d / name)), None)
         if target is None:
             looked = ", ".join(shown_path(d) + os.sep for d in include_dirs)
-            yield text, origin, f'cannot find the included file "{name}" (looked in {looked})'
+            # Left as it is, glslang would look for it by itself, in the current folder.
+            yield "#error no such file", origin, f'cannot find the included file "{name}" (looked in {looked})'
         elif target in included or target.resolve() in within:
             # SHADERed drops the second include of a file from the text of one; a circle would never end.
             yield "", origin, None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,12 +49,15 @@ class Array:
     length: int
 
     def __str__(self):
-        return f"{self.element}[{self.length}]"
+        lengths, element = "", self
+        while isinstance(element, Array):
+            lengths, element = f"{lengths}[{element.length}]", element.element
+        return f"{element}{lengths}"
 
 
 @dataclass(frozen=True)
 class Struct:
-    """A structure. ``name`` is None where the compiler does not tell it (a structure within another)."""
+    """A structure. ``name`` is None where it has none."""
 
     members: tuple[tuple[str, Type], ...]
     name: str | None = None
@@ -166,6 +169,7 @@ class _TypeReader:
         return Struct(tuple(members))
 
 
+_PROBE = "hn_struct_"
 _FUNCTION = re.compile(r"^0:(\d+) +Function Definition: (\w+)\((.*?) \( (.*)\)$")
 _PARAMETER = re.compile(r"^0:\S+ +'(\w*)' \( (.*)\)$")
 
@@ -183,45 +187,59 @@ def _definitions(tree: str) -> Iterator[tuple[int, str, list[str], Type, list[tu
 
 
 def _direction(spelled: str) -> str:
-    word = spelled.split()[0]
-    return word if word in ("out", "inout") else "in"
+    qualifiers = spelled.partition("{")[0].split()
+    return next((word for word in ("out", "inout") if word in qualifiers), "in")
 
 
-def _named(kind: Type, names: Mapping[Struct, str]) -> Type:
-    """The type with every structure's name filled in."""
+def _named(kind: Type, names: Iterator[str]) -> Type:
+    """The type with its structures named from ``names``: the outer before the inner, in the order of the members."""
     if isinstance(kind, Array):
         return Array(_named(kind.element, names), kind.length)
     if isinstance(kind, Struct):
-        return Struct(tuple((n, _named(t, names)) for n, t in kind.members), kind.name or names.get(kind))
+        name = next(names, None)
+        return Struct(tuple((n, _named(t, names)) for n, t in kind.members), name)
     return kind
 
 
-def signatures(source: Source, struct_names: list[str]) -> list[Signature]:
+def _parameter_type(mangled: str, spelled: str) -> Type:
+    """The dump spells a structure by its members; the mangled name of the function has the names."""
+    return _named(_TypeReader(spelled).read(), iter(re.findall(r"struct-(\w+)", mangled)))
+
+
+def _result_type(kind: Type, struct: Struct | None) -> Type:
+    """The type with the structure in it replaced by ``struct``, the same with its names."""
+    if isinstance(kind, Array):
+        return Array(_result_type(kind.element, struct), kind.length)
+    return struct if isinstance(kind, Struct) and struct else kind
+
+
+def signatures(source: Source, struct_names: Sequence[str], result_names: Sequence[str]) -> list[Signature]:
     """All functions that ``source`` defines, in order. GlslError when it does not compile.
 
-    ``struct_names`` are its global structures. The dump does not name the structure that a function returns, so each is
-    made the parameter of a function of its own, and told by its members.
+    ``struct_names`` are its global structures, ``result_names`` what each function returns. The dump names structures
+    where they are parameters alone, so each is made the parameter of a function of its own.
     """
-    probes = "".join(f"void hn_struct_{n}({n} s) {{}}\n" for n in struct_names)
+    probes = "".join(f"void {_PROBE}{n}({n} s) {{}}\n" for n in struct_names)
     try:
         tree = native.glsl_tree(Stage.FRAGMENT, source.text + probes)
     except NativeError as error:
         raise source.error(str(error)) from None
     definitions = list(_definitions(tree))
-    names = {
-        _TypeReader(spelled[0][1]).read(): name.removeprefix("hn_struct_")
-        for _, name, _, _, spelled in definitions
-        if name.startswith("hn_struct_")
+    structs = {
+        name.removeprefix(_PROBE): _parameter_type(mangled[0], spelled[0][1])
+        for _, name, mangled, _, spelled in definitions
+        if name.startswith(_PROBE)
     }
-    found = []
-    for line, name, mangled, result, spelled in definitions:
-        if name.startswith("hn_struct_"):
-            continue
-        parameters = []
-        for code, (parameter, text) in zip(mangled, spelled, strict=True):
-            kind = _TypeReader(text).read()
-            if isinstance(kind, Struct) and (match := re.match(r"struct-(\w+)-", code)):
-                kind = Struct(kind.members, match[1])
-            parameters.append(Parameter(parameter, _named(kind, names), _direction(text)))
-        found.append(Signature(name, _named(result, names), tuple(parameters), source.origin(line)))
-    return found
+    own = (d for d in definitions if not d[1].startswith(_PROBE))
+    return [
+        Signature(
+            name,
+            _result_type(result, structs.get(result_name)),
+            tuple(
+                Parameter(parameter or f"unnamed_{n}", _parameter_type(code, text), _direction(text))
+                for n, (code, (parameter, text)) in enumerate(zip(mangled, spelled, strict=True), 1)
+            ),
+            source.origin(line),
+        )
+        for (line, name, mangled, result, spelled), result_name in zip(own, result_names, strict=True)
+    ]
