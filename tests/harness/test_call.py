@@ -58,16 +58,6 @@ def assert_same_bits(got, want) -> None:
     assert got.tobytes() == want.tobytes()
 
 
-@pytest.fixture
-def functions(tmp_path):
-    def compile(text: str, **options):
-        path = tmp_path / "test.glsl"
-        path.write_text(text)
-        return shader(path, **options)
-
-    return compile
-
-
 @pytest.fixture(scope="module")
 def shared(tmp_path_factory):
     """Functions that many tests call, compiled once a mode."""

@@ -5,21 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from harness import CallError, GlslError, HarnessError, native, shader
+from harness import CallError, GlslError, HarnessError, native
 from harness.evaluation import leaves
 from harness.signature import Array, Numeric, Struct
 
 FLOAT, VEC3 = Numeric("float"), Numeric("float", 3)
-
-
-@pytest.fixture
-def functions(tmp_path):
-    def compile(text: str, **options):
-        path = tmp_path / "test.glsl"
-        path.write_text(text)
-        return shader(path, **options)
-
-    return compile
 
 
 # ---- Leaves ----------------------------------------------------------------------------------------------------------

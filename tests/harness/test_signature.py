@@ -9,18 +9,6 @@ from harness import GlslError, shader
 from harness.signature import Array, Numeric, Struct
 
 
-@pytest.fixture
-def functions(tmp_path):
-    """Compiles a text; what comes back has a function of GLSL as each of its attributes."""
-
-    def compile(text: str, **options):
-        path = tmp_path / "test.glsl"
-        path.write_text(text)
-        return shader(path, **options)
-
-    return compile
-
-
 def signature(functions, text: str, name: str = "f"):
     (found,) = functions(text)[name].signatures
     return found
