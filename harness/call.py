@@ -222,7 +222,9 @@ def _leaf_arrays(kind: Type, value: Any, name: str):
             raise CallError(f"{name} is a {kind}: a dict of {', '.join(wanted)}, got {got}")
         for member, inner in kind.members:
             yield from _leaf_arrays(inner, members[member], f"{name}.{member}")
-    elif dense := _dense(kind):
+    elif isinstance(kind, Numeric) and kind.base in DTYPES:
+        yield _array(kind, kind.shape, value, name, kind)
+    elif dense := _dense(kind):  # an array of numbers
         whole = _array(*dense, value, name, kind)
         batch = whole.ndim - len(dense[1])
         for place in np.ndindex(dense[1][: len(dense[1]) - len(dense[0].shape)]):
