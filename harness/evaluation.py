@@ -24,6 +24,7 @@ MODES = {
 }
 VERSION = 330  # the first that the test fragment can be written in
 PRECISE_VERSION = 400  # the first with `precise`
+COMPUTE_VERSION = 430  # the first with compute stages
 
 _FIRST = "[0]"
 _SAMPLERS = {
@@ -113,6 +114,12 @@ def _at_least(version: int, text: str) -> str:
     return f"{' '.join(words)}\n{rest}"
 
 
+def _finished(source: Source, rest: list[str], mode: str, version: int) -> str:
+    """The source with what is put after it, in a mode, for a version of GLSL at least."""
+    text = "\n".join([source.text.rstrip("\n"), *rest, ""])
+    return _at_least(version, rewrite.make_precise(text) if mode == "precise" else text)
+
+
 class Evaluation:
     """One GLSL function, compiled in one mode: ``run`` takes flat arrays and gives flat arrays."""
 
@@ -140,12 +147,9 @@ class Evaluation:
         if len(widths) > OUTPUTS_MAX:
             raise CallError(f"{signature} yields more than {OUTPUTS_MAX} vectors at once", *signature.origin)
         self._widths = widths
-        text = source.text.rstrip("\n") + "\n" + self._main()
-        if mode == "precise":
-            text = _at_least(PRECISE_VERSION, rewrite.make_precise(text))
         try:
             native.open_context()
-            self._program = native.Program(native.evaluate_vertex(), text)
+            self._program = self._compute_program(source, mode) or self._fragment_program(source, mode)
         except NativeError as error:
             stage, _, log = str(error).partition(": ")
             raise source.error(log if stage in ("vertex", "fragment") else str(error)) from None
@@ -154,13 +158,43 @@ class Evaluation:
             n.removesuffix(_FIRST): u for n, u in self._program.uniforms.items() if not n.startswith("hn_")
         }
 
-    def _main(self) -> str:
-        """The rest of the shader: buffers, outputs, and a main() that calls the function once."""
+    def _fragment_program(self, source: Source, mode: str) -> native.Program:
+        declarations, body, numbers = self._call()
+        declarations += ["uniform int hn_first;", "uniform int hn_width;"]
+        index = "int hn_i = hn_first + int(gl_FragCoord.y) * hn_width + int(gl_FragCoord.x);"
+        for location, (values, width) in enumerate(zip(numbers, self._widths, strict=True)):
+            declarations.append(f"layout(location = {location}) out vec4 hn_out{location};")
+            body.append(f"hn_out{location} = vec4({', '.join(values + ['0.0'] * (OUTPUT_FLOATS - width))});")
+        main = ["void main()", "{", index, *body, "}"]
+        version = PRECISE_VERSION if mode == "precise" else VERSION
+        text = _finished(source, [*declarations, *main], mode, version)
+        return native.Program(native.evaluate_vertex(), text)
+
+    def _compute_program(self, source: Source, mode: str) -> native.Program | None:
+        """The same in a compute stage; None where there is none, or the function needs what only a fragment has."""
+        if not native.compute_available():
+            return None
+        declarations, body, numbers = self._call()
+        declarations.append("uniform int hn_count;")
+        for k, (values, width) in enumerate(zip(numbers, self._widths, strict=True)):
+            declarations.append(f"layout(std430, binding = {k}) writeonly buffer hn_Out{k} {{ float hn_out{k}[]; }};")
+            body += [f"hn_out{k}[hn_i * {width} + {c}] = {value};" for c, value in enumerate(values)]
+        index = ["int hn_i = int(gl_GlobalInvocationID.x);", "if (hn_i >= hn_count) return;"]
+        main = [native.compute_head(), "void main()", "{", *index, *body, "}"]
+        try:
+            return native.Program.compute(_finished(source, [*declarations, *main], mode, COMPUTE_VERSION))
+        except NativeError:
+            return None
+
+    def _call(self) -> tuple[list[str], list[str], list[list[str]]]:
+        """GLSL that reads the arguments of element hn_i and calls the function once.
+
+        Declarations, statements, and for each output vector the numbers that go into it.
+        """
         parameters = [(f"hn_arg{n}", p) for n, p in enumerate(self.signature.parameters)]
         variables = {p.name: variable for variable, p in parameters}
-        declarations = ["uniform int hn_first;", "uniform int hn_width;"]
+        declarations = []
         body = [f"{p.type} {variable};" for variable, p in parameters]
-        body += ["int hn_i = hn_first + int(gl_FragCoord.y) * hn_width + int(gl_FragCoord.x);"]
         for name, buffers in self.inputs:
             declarations += [f"uniform {_SAMPLERS[leaf.type.base]} {buffer};" for buffer, leaf in buffers]
             body += [_fetch(leaf, buffer, f"{variables[name]}{leaf.path}") for buffer, leaf in buffers]
@@ -168,17 +202,12 @@ class Evaluation:
         body += [call if self.signature.result == VOID else f"{self.signature.result} hn_result = {call}"]
         results = [] if self.signature.result == VOID else ["hn_result"]
         results += [variable for variable, p in parameters if p.direction != "in"]
-
-        location = 0
+        vectors = []
         for result, (_, parts) in zip(results, self.outputs, strict=True):
             for leaf in parts:
                 numbers = _numbers(leaf, f"{result}{leaf.path}")
-                for start in range(0, len(numbers), OUTPUT_FLOATS):
-                    four = (numbers[start : start + OUTPUT_FLOATS] + ["0.0"] * 3)[:OUTPUT_FLOATS]
-                    declarations.append(f"layout(location = {location}) out vec4 hn_out_{location};")
-                    body.append(f"hn_out_{location} = vec4({', '.join(four)});")
-                    location += 1
-        return "\n".join([*declarations, "void main()", "{", *body, "}", ""])
+                vectors += [numbers[k : k + OUTPUT_FLOATS] for k in range(0, len(numbers), OUTPUT_FLOATS)]
+        return declarations, body, vectors
 
     def array_length(self, name: str) -> int | None:
         """How many elements of a uniform the function reads; None where it is no array."""
@@ -201,6 +230,9 @@ class Evaluation:
         given = [(buffer, leaf) for _, buffers in self.inputs for buffer, leaf in buffers]
         planes = [np.empty((count, width), np.float32) for width in self._widths]
         step = native.evaluate_limit() // max([1, *(leaf.texels for _, leaf in given)])
+        if native.compute_available():
+            step = min(step, native.compute_limit(max(self._widths)))
+        step = step // 4 * 4 or step  # every part of an array aligned like the first, so that none is copied
         for first in range(0, count, step):
             n = min(step, count - first)
             texels = {

@@ -107,6 +107,11 @@ _PROTOTYPES = {
     "hn_program_attributes": (_INT, [_UINT, _VARIABLES, _INT]),
     "hn_program_uniform": (_INT, [_UINT, ctypes.c_int32, _UINT, ctypes.c_int32, _POINTER]),
     "hn_evaluate": (_INT, [_UINT, ctypes.POINTER(_Input), _INT, ctypes.POINTER(_Output), _INT, _SIZE]),
+    "hn_program_create_compute": (_UINT, [_TEXT]),
+    "hn_compute": (_INT, [_UINT, ctypes.POINTER(_Input), _INT, ctypes.POINTER(_Output), _INT, _SIZE]),
+    "hn_compute_available": (_INT, []),
+    "hn_compute_head": (_TEXT, []),
+    "hn_compute_limit": (_SIZE, [_UINT]),
     "hn_evaluate_vertex": (_TEXT, []),
     "hn_evaluate_limit": (_SIZE, []),
     "hn_mesh_load": (_POINTER, [_TEXT]),
@@ -213,11 +218,40 @@ def evaluate_limit() -> int:
     return _library.hn_evaluate_limit()
 
 
+def compute_available() -> bool:
+    """Whether the open context has compute stages."""
+    return bool(_library.hn_compute_available())
+
+
+def compute_head() -> str:
+    """What a compute stage for ``Program.evaluate`` begins with, after its #version."""
+    return _library.hn_compute_head().decode()
+
+
+def compute_limit(components: int) -> int:
+    """The most elements of so many components that a compute program can be evaluated for at once."""
+    return _library.hn_compute_limit(components)
+
+
 class Program:
-    """A linked program. NativeError on failure: ``vertex: LOG``, ``fragment: LOG`` or ``link: LOG``."""
+    """A linked program of a vertex and a fragment stage, or by ``compute`` of a compute stage.
+
+    NativeError on failure: ``vertex: LOG``, ``fragment: LOG``, ``compute: LOG`` or ``link: LOG``.
+    """
 
     def __init__(self, vertex: str, fragment: str):
-        self._name = _made(_library.hn_program_create(vertex.encode(), fragment.encode()))
+        self._take(_library.hn_program_create(vertex.encode(), fragment.encode()), _library.hn_evaluate)
+
+    @classmethod
+    def compute(cls, text: str) -> Program:
+        """A program of one compute stage."""
+        program = cls.__new__(cls)
+        program._take(_library.hn_program_create_compute(text.encode()), _library.hn_compute)
+        return program
+
+    def _take(self, name: int, evaluate) -> None:
+        self._name = _made(name)
+        self._evaluate = evaluate
         self.uniforms = self._variables(_library.hn_program_uniforms)
         self.attributes = self._variables(_library.hn_program_attributes)
 
@@ -238,7 +272,7 @@ class Program:
         _done(_library.hn_program_uniform(self._name, variable.location, gl_type, count, values.ctypes.data))
 
     def evaluate(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[np.ndarray], count: int) -> None:
-        """Runs the fragment stage for ``count`` elements.
+        """Runs the fragment or compute stage for ``count`` elements.
 
         ``inputs`` maps the name of a buffer sampler to a C-contiguous array (texels, components) of float32, int32 or
         uint32; ``outputs`` are C-contiguous float32 arrays (count, components), filled in place.
@@ -250,7 +284,7 @@ class Program:
             )
         )
         outs = (_Output * len(outputs))(*((_address(array), array.shape[1]) for array in outputs))
-        _done(_library.hn_evaluate(self._name, ins, len(ins), outs, len(outs), count))
+        _done(self._evaluate(self._name, ins, len(ins), outs, len(outs), count))
 
     def __del__(self):
         if getattr(self, "_name", 0):

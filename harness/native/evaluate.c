@@ -1,15 +1,10 @@
 /* evaluate.c: runs a fragment shader once for each element of arrays, and reads back what it makes of them.
  *
- * Fetching costs more than the arithmetic of a whole reflection model, so nothing is copied that need not be:
- *   - Inputs are buffer textures over the caller's own memory (GL_AMD_pinned_memory), copied only where the driver
- *     cannot do that or the memory is not aligned for it.
  *   - The batch is drawn in tiles into targets that stay, small enough that their pages are touched once and their
  *     readback comes from the cache: a new target of a large batch's size costs as much as the drawing.
  *   - There are two targets: while one is read back, on this thread, the driver's threads draw into the other.
  */
 #include "internal.h"
-
-#include <GL/glext.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -19,16 +14,13 @@ enum {
     TILE_HEIGHT = 1024,
     TILE_WIDTH_MIN = 16,
     TARGETS = 2,
-    OUTPUTS_MAX = 8,
-    INPUTS_MAX = 64,
-    PIN_ALIGNMENT = 16, /* of the widest texel, RGBA32F: the driver may load it by one instruction */
 };
 
 /* A target that stays: attachments 0 ... n_outputs-1 of one size. It dies with its context. */
 typedef struct {
     uint32_t context_id;
     GLuint framebuffer;
-    GLuint textures[OUTPUTS_MAX];
+    GLuint textures[HN_OUTPUTS_MAX];
     int n_outputs, width, height;
 } tile_target;
 static tile_target targets[TARGETS];
@@ -37,7 +29,7 @@ static int target_reserve(tile_target *target, int width, int height, int n_outp
     if (target->context_id == hn_context_id()) {
         if (target->width >= width && target->height >= height && target->n_outputs >= n_outputs)
             return 0;
-        gl.DeleteTextures(OUTPUTS_MAX, target->textures);
+        gl.DeleteTextures(HN_OUTPUTS_MAX, target->textures);
         gl.DeleteFramebuffers(1, &target->framebuffer);
         width = width > target->width ? width : target->width;
         height = height > target->height ? height : target->height;
@@ -70,53 +62,6 @@ static int target_reserve(tile_target *target, int width, int height, int n_outp
     return 0;
 }
 
-/* The format of a buffer texture with this texel; 0 for none. */
-static GLenum texel_format(uint32_t base, uint32_t components) {
-    static const GLenum formats[3][4] = {{GL_R32F, GL_RG32F, GL_RGB32F, GL_RGBA32F},
-                                         {GL_R32I, GL_RG32I, GL_RGB32I, GL_RGBA32I},
-                                         {GL_R32UI, GL_RG32UI, GL_RGB32UI, GL_RGBA32UI}};
-    if (components < 1 || components > 4)
-        return 0;
-    switch (base) {
-    case GL_FLOAT:
-        return formats[0][components - 1];
-    case GL_INT:
-        return formats[1][components - 1];
-    case GL_UNSIGNED_INT:
-        return formats[2][components - 1];
-    default:
-        return 0;
-    }
-}
-
-static int input_check(const hn_input *input) {
-    if (!texel_format(input->base, input->components))
-        return hn_fail("hn_evaluate: input %s: %u components of type 0x%x are no texel", input->name,
-                       input->components, input->base);
-    if (input->count == 0 || input->count > hn_evaluate_limit())
-        return hn_fail("hn_evaluate: input %s: %zu texels, but 1 ... %zu can be", input->name, input->count,
-                       hn_evaluate_limit());
-    return 0;
-}
-
-/* Makes the buffer texture of an input on a unit. An input that the program does not read is left out. */
-static void input_bind(uint32_t program, const hn_input *input, int unit, int pin, GLuint buffer,
-                       GLuint texture) {
-    GLint location = gl.GetUniformLocation(program, input->name);
-    if (location < 0)
-        return;
-    GLenum binding = GL_TEXTURE_BUFFER;
-    if (pin && (uintptr_t)input->data % PIN_ALIGNMENT == 0)
-        binding = GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD;
-    gl.BindBuffer(binding, buffer);
-    gl.BufferData(binding, (GLsizeiptr)(input->count * input->components * 4), input->data, GL_STREAM_DRAW);
-    gl.BindBuffer(binding, 0);
-    gl.ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
-    gl.BindTexture(GL_TEXTURE_BUFFER, texture);
-    gl.TexBuffer(GL_TEXTURE_BUFFER, texel_format(input->base, input->components), buffer);
-    gl.Uniform1i(location, unit);
-}
-
 /* Reads the first `count` elements of the tile, a whole number of rows and a rest, to element `first` of the
  * outputs. */
 static void tile_read(const hn_output *outputs, int n_outputs, int width, size_t first, size_t count) {
@@ -146,7 +91,7 @@ static int tile_width(size_t count) {
 }
 
 static void draw_tiles(uint32_t program, const hn_output *outputs, int n_outputs, size_t count, int width) {
-    GLenum attachments[OUTPUTS_MAX];
+    GLenum attachments[HN_OUTPUTS_MAX];
     for (int k = 0; k < n_outputs; ++k)
         attachments[k] = GL_COLOR_ATTACHMENT0 + (GLenum)k;
     gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
@@ -178,39 +123,18 @@ static void draw_tiles(uint32_t program, const hn_output *outputs, int n_outputs
     }
 }
 
-/* Whether inputs can be read where they lie; asked once a context, for the driver lists hundreds of extensions. */
-static int can_pin(void) {
-    static uint32_t context_id;
-    static int answer;
-    if (context_id != hn_context_id()) {
-        context_id = hn_context_id();
-        answer = hn_gl_has("GL_AMD_pinned_memory");
-    }
-    return answer;
-}
-
 int hn_evaluate(uint32_t program, const hn_input *inputs, int n_inputs, const hn_output *outputs,
                 int n_outputs, size_t count) {
     if (hn_context_check("hn_evaluate"))
         return -1;
-    GLint units = 0, attachments = 0;
-    gl.GetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
+    if (hn_arrays_check(inputs, n_inputs, outputs, n_outputs))
+        return -1;
+    GLint attachments = 0;
     gl.GetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &attachments);
-    units = units < INPUTS_MAX ? units : INPUTS_MAX;
-    attachments = attachments < OUTPUTS_MAX ? attachments : OUTPUTS_MAX;
-    if (n_inputs < 0 || n_inputs > units)
-        return hn_fail("hn_evaluate: %d inputs, but this driver takes at most %d", n_inputs, units);
-    if (n_outputs < 1 || n_outputs > attachments)
-        return hn_fail("hn_evaluate: %d outputs, but this driver gives 1 ... %d", n_outputs, attachments);
+    if (n_outputs > attachments)
+        return hn_fail("hn_evaluate: %d outputs, but this driver gives at most %d", n_outputs, attachments);
     if (count > hn_evaluate_limit())
         return hn_fail("hn_evaluate: %zu elements, but at most %zu at a time", count, hn_evaluate_limit());
-    for (int k = 0; k < n_inputs; ++k)
-        if (input_check(&inputs[k]))
-            return -1;
-    for (int k = 0; k < n_outputs; ++k)
-        if (outputs[k].components < 1 || outputs[k].components > 4)
-            return hn_fail("hn_evaluate: output %d: %u components, but 1 ... 4 can be", k,
-                           outputs[k].components);
     if (count == 0)
         return 0;
 
@@ -222,18 +146,12 @@ int hn_evaluate(uint32_t program, const hn_input *inputs, int n_inputs, const hn
             return -1;
     gl.UseProgram(program);
 
-    GLuint buffers[INPUTS_MAX], textures[INPUTS_MAX];
-    int pin = can_pin();
-    gl.GenBuffers(n_inputs, buffers);
-    gl.GenTextures(n_inputs, textures);
-    for (int k = 0; k < n_inputs; ++k)
-        input_bind(program, &inputs[k], k, pin, buffers[k], textures[k]);
-    int failed = hn_check_gl("hn_evaluate: inputs of program %u", program);
+    hn_bound_inputs bound;
+    int failed = hn_inputs_bind(&bound, program, inputs, n_inputs);
     if (!failed)
         draw_tiles(program, outputs, n_outputs, count, width);
     gl.Finish(); /* the caller may free pinned memory from here on */
-    gl.DeleteTextures(n_inputs, textures);
-    gl.DeleteBuffers(n_inputs, buffers);
+    hn_inputs_release(&bound);
     gl.UseProgram(0);
     gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl.BindVertexArray(0);
@@ -244,11 +162,4 @@ const char *hn_evaluate_vertex(void) {
     return "#version 330\n"
            "void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); "
            "}\n";
-}
-
-size_t hn_evaluate_limit(void) {
-    GLint texels = 0;
-    if (hn_context_check("hn_evaluate_limit") == 0)
-        gl.GetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
-    return (size_t)texels;
 }

@@ -31,6 +31,10 @@ int hn_gl_load(hn_gl_function (*get)(const char *name)) {
         hn_gl_unload();
         return hn_fail("hn_context_open: OpenGL %d.%d, but 3.3 is needed", major, minor);
     }
+    /* By version, not by what `get` finds: it answers for any name. */
+    if (major * 10 + minor >= 43) {
+        HN_GL_43(HN_GL_GET)
+    }
     return 0;
 }
 

@@ -54,6 +54,7 @@
     X(PFNGLGETACTIVEATTRIBPROC, GetActiveAttrib)                 \
     X(PFNGLGETACTIVEUNIFORMPROC, GetActiveUniform)               \
     X(PFNGLGETATTRIBLOCATIONPROC, GetAttribLocation)             \
+    X(PFNGLGETBUFFERSUBDATAPROC, GetBufferSubData)               \
     X(PFNGLGETERRORPROC, GetError)                               \
     X(PFNGLGETINTEGERVPROC, GetIntegerv)                         \
     X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)             \
@@ -98,9 +99,16 @@
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
     X(PFNGLVIEWPORTPROC, Viewport)
 
+/* From GL 4.3 on: NULL in an older context. */
+#define HN_GL_43(X)                              \
+    X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)   \
+    X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute) \
+    X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)
+
 #define HN_GL_MEMBER(type, name) type name;
 typedef struct {
     HN_GL_33(HN_GL_MEMBER)
+    HN_GL_43(HN_GL_MEMBER)
 } hn_gl;
 #undef HN_GL_MEMBER
 

@@ -62,6 +62,8 @@ char *hn_glsl_tree(hn_stage stage, const char *text);
 /* Compiles and links with the driver. On failure hn_error() is "vertex: LOG", "fragment: LOG" or "link: LOG"
  * with the driver's log, unedited. */
 uint32_t hn_program_create(const char *vertex, const char *fragment);
+/* Of one compute stage, where hn_compute_available(). On failure hn_error() is "compute: LOG" or "link: LOG". */
+uint32_t hn_program_create_compute(const char *compute);
 void hn_program_delete(uint32_t program);
 
 /* An active uniform or vertex attribute, as the linker left it. */
@@ -80,7 +82,7 @@ int hn_program_attributes(uint32_t program, hn_variable *out, int capacity);
  * as their unit); `data` holds `count` elements of 4-byte components, matrices column by column. */
 int hn_program_uniform(uint32_t program, int32_t location, uint32_t type, int32_t count, const void *data);
 
-/* ---- Evaluation over arrays (evaluate.c) --------------------------------------------------------------- */
+/* ---- Evaluation over arrays (evaluate.c, compute.c, arrays.c) ------------------------------------------ */
 
 /* One input array. The fragment shader reads it through the uniform samplerBuffer (isamplerBuffer,
  * usamplerBuffer) called `name`. It is handed to the driver where it lies, not copied, when the driver can
@@ -109,6 +111,17 @@ int hn_evaluate(uint32_t program, const hn_input *inputs, int n_inputs, const hn
 const char *hn_evaluate_vertex(void);
 /* The most texels an input may have. */
 size_t hn_evaluate_limit(void);
+
+/* Whether the context has compute stages (GL 4.3), which evaluate in half the time. */
+int hn_compute_available(void);
+/* The same by a compute program whose text begins, after its #version, with hn_compute_head(). It finds
+ *     i = int(gl_GlobalInvocationID.x), and leaves when i >= hn_count, `uniform int hn_count`.
+ * Output k is the shader storage block of binding k, an array of floats: components of them for each element. */
+int hn_compute(uint32_t program, const hn_input *inputs, int n_inputs, const hn_output *outputs,
+               int n_outputs, size_t count);
+const char *hn_compute_head(void);
+/* The most elements of so many components that one hn_compute takes, a multiple of 4. */
+size_t hn_compute_limit(uint32_t components);
 
 /* ---- Meshes (mesh.c) ----------------------------------------------------------------------------------- */
 

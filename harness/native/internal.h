@@ -38,6 +38,22 @@ typedef struct {
     size_t first_vertex, n_vertices, first_index, n_indices;
 } hn_part;
 
+enum { HN_INPUTS_MAX = 64, HN_OUTPUTS_MAX = 8 };
+
+/* Fails unless the arrays of an evaluation are such as can be. */
+int hn_arrays_check(const hn_input *inputs, int n_inputs, const hn_output *outputs, int n_outputs);
+/* Makes `buffer` a buffer over the caller's memory and returns 1; where that cannot be, one of the same size, filled
+ * when it is an `input`, and returns 0. */
+int hn_buffer_over(uint32_t binding, uint32_t buffer, const void *data, size_t size, int input);
+
+/* The inputs of a program in use, each in its texture unit. */
+typedef struct {
+    int n;
+    uint32_t buffers[HN_INPUTS_MAX], textures[HN_INPUTS_MAX];
+} hn_bound_inputs;
+int hn_inputs_bind(hn_bound_inputs *bound, uint32_t program, const hn_input *inputs, int n_inputs);
+void hn_inputs_release(const hn_bound_inputs *bound);
+
 struct hn_mesh {
     uint32_t context_id;
     uint32_t vertex_buffer, index_buffer;

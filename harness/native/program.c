@@ -63,6 +63,23 @@ uint32_t hn_program_create(const char *vertex, const char *fragment) {
     return program;
 }
 
+uint32_t hn_program_create_compute(const char *compute) {
+    const char *operation = "hn_program_create_compute";
+    if (hn_context_check(operation))
+        return 0;
+    if (!compute || !hn_compute_available()) {
+        hn_fail("%s: no %s", operation, compute ? "compute stage in this context" : "text");
+        return 0;
+    }
+    GLuint program = gl.CreateProgram();
+    if (attach(program, GL_COMPUTE_SHADER, "compute", compute) || link_program(program) ||
+        hn_check_gl("%s", operation)) {
+        gl.DeleteProgram(program);
+        return 0;
+    }
+    return program;
+}
+
 void hn_program_delete(uint32_t program) {
     if (program == 0 || hn_context_check("hn_program_delete"))
         return;

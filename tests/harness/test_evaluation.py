@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from harness import CallError, GlslError, HarnessError, native
+from harness import CallError, GlslError, HarnessError, native, shader
 from harness.evaluation import leaves
 from harness.signature import Array, Numeric, Struct
 
@@ -145,3 +145,46 @@ def test_a_version_that_lacks_what_calls_need_is_refused(functions, version):
 def test_doubles_are_refused(functions, text):
     with pytest.raises(CallError, match=r"test\.glsl:2: .*double|test\.glsl:2: .*dvec2"):
         functions(f"#version 430\n{text}").f(1)
+
+
+# ---- The two stages --------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def without_compute(monkeypatch):
+    """Evaluates by the fragment stage, as in a context before GL 4.3."""
+
+    def use():
+        monkeypatch.setattr(native, "compute_available", lambda: False)
+
+    native.open_context()
+    return use
+
+
+@pytest.mark.parametrize("count", [1, 255, 256, 257, 100_003])
+def test_the_fragment_stage_gives_the_same_bits(root, mode, without_compute, count):
+    random = np.random.default_rng(count)
+    vectors = random.standard_normal((3, count, 3))
+    l, v, n = (vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)).astype(np.float32)  # noqa: E741
+    material = {"albedo": random.random((count, 3)), "metalness": 0.5, "roughness": random.random(count)}
+    by_compute = shader(root / "shaders" / "brdf.glsl", mode=mode).shade(l, v, n, material)
+    without_compute()
+    by_fragment = shader(root / "shaders" / "brdf.glsl", mode=mode).shade(l, v, n, material)
+    np.testing.assert_array_equal(by_compute, by_fragment)
+
+
+@pytest.mark.parametrize("kind", ["float", "vec3", "mat3", "ivec2", "bool", "uvec4"])
+def test_the_fragment_stage_takes_and_gives_every_type(functions, without_compute, kind):
+    without_compute()
+    same = functions(f"{kind} same({kind} x) {{ return x; }}").same
+    shape = {"float": (7,), "vec3": (7, 3), "mat3": (7, 3, 3), "ivec2": (7, 2), "bool": (7,), "uvec4": (7, 4)}[kind]
+    values = np.arange(np.prod(shape)).reshape(shape) % (2 if kind == "bool" else 1000)
+    values = values.astype(bool) if kind == "bool" else values
+    np.testing.assert_array_equal(same(values), values)
+
+
+@pytest.mark.parametrize("use", ["gl_FragCoord.x", "dFdx(x)"])
+def test_what_only_a_fragment_has_is_evaluated_there(functions, use):
+    """A compute stage does not compile with it."""
+    got = functions(f"float f(float x) {{ return x + 0.0 * {use}; }}").f([1, 2, 3])
+    np.testing.assert_array_equal(got, [1, 2, 3])

@@ -43,6 +43,50 @@ static void test_elements(void) {
     hn_program_delete(program);
 }
 
+/* The same by a compute stage, into memory that can be pinned and into memory that is not aligned for it. */
+static void test_compute(void) {
+    CHECK(hn_compute_available() == 1);
+    char text[1024];
+    snprintf(text, sizeof text,
+             "#version 430\n%suniform int hn_count;\nuniform samplerBuffer x;\n"
+             "layout(std430, binding = 0) writeonly buffer A { float a[]; };\n"
+             "void main() { int i = int(gl_GlobalInvocationID.x); if (i >= hn_count) return;\n"
+             "vec3 v = texelFetch(x, i).xyz; a[2 * i] = v.z; a[2 * i + 1] = v.x; }\n",
+             hn_compute_head());
+    uint32_t program = hn_program_create_compute(text);
+    CHECK(program != 0);
+    enum { N = 1000, GUARD = 8 };
+    float *x = malloc(N * 3 * sizeof *x), *memory = malloc((N * 2 + 2 * GUARD) * sizeof *memory);
+    for (int i = 0; i < 3 * N; ++i)
+        x[i] = (float)i;
+    for (int shift = 0; shift < 4; ++shift) {
+        for (int i = 0; i < N * 2 + 2 * GUARD; ++i)
+            memory[i] = -1;
+        const hn_input input = {"x", x, GL_FLOAT, 3, N};
+        const hn_output output = {memory + GUARD + shift, 2};
+        CHECK(hn_compute(program, &input, 1, &output, 1, N) == 0);
+        size_t wrong = 0;
+        for (int i = 0; i < N; ++i)
+            wrong += output.data[2 * i] != x[3 * i + 2] || output.data[2 * i + 1] != x[3 * i];
+        for (int i = 0; i < GUARD; ++i)
+            wrong += output.data[-1 - i] >= 0 || (i < GUARD - shift && output.data[2 * N + i] >= 0);
+        CHECK(wrong == 0);
+    }
+    const hn_input input = {"x", x, GL_FLOAT, 3, N};
+    const hn_output output = {memory, 2}, no_components = {memory, 0};
+    CHECK(hn_compute(program, &input, 1, &output, 1, 0) == 0);
+    CHECK(hn_compute_limit(4) > 1000000 && hn_compute_limit(4) % 4 == 0);
+    CHECK(hn_compute_limit(1) >= hn_compute_limit(4));
+    CHECK_FAILS(hn_compute(program, &input, 1, &output, 1, (size_t)1 << 40) == -1, "at a time");
+    CHECK_FAILS(hn_compute(program, &input, 1, &no_components, 1, N) == -1, "0 components");
+    CHECK_FAILS(hn_compute(9999, &input, 1, &output, 1, N) == -1, "GL_INVALID_VALUE");
+    CHECK_FAILS(hn_program_create_compute("#version 430\nvoid main() { x; }\n") == 0, "compute: ");
+    CHECK_FAILS(hn_program_create_compute(NULL) == 0, "no text");
+    free(x);
+    free(memory);
+    hn_program_delete(program);
+}
+
 static void test_failures(void) {
     uint32_t program = hn_program_create(hn_evaluate_vertex(),
                                          INDEX "uniform samplerBuffer x;\nlayout(location = 0) out vec4 a;\n"
@@ -64,5 +108,6 @@ static void test_failures(void) {
 
 void test_evaluate(void) {
     test_elements();
+    test_compute();
     test_failures();
 }
