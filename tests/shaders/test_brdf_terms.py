@@ -22,6 +22,9 @@ ROUGHNESSES = [0.0, TINY_ALPHA**0.5, 1e-4, 1e-3, 0.01, 0.045, 0.089, 0.2, 0.5, 0
 #: llvmpipe's pow(x, 5), in ulp: measured 61 to 81; GLSL asks no less of it than of exp2(5 log2(x))
 POW_ULP = 100
 
+RANDOM = np.random.default_rng(20)
+COSINES += RANDOM.random(8, np.float32).tolist()
+ROUGHNESSES += RANDOM.random(6, np.float32).tolist()
 ALPHAS = [float(np.float32(r) ** 2) for r in ROUGHNESSES]
 
 

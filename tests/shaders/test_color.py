@@ -9,9 +9,10 @@ import pytest
 from harness import assert_ulp
 
 CODES = np.arange(256, dtype=np.float32) / np.float32(255)
-#: 0, the ends of the linear pieces and their neighbours, 1, and a sweep
-STORED = np.unique(np.concatenate([np.float32([0, 1e-30, 1e-5, 0.04045, 0.040450003, 1]), CODES]))
-LINEAR = np.unique(np.concatenate([np.float32([0, 1e-30, 1e-5, 0.0031308, 0.0031309, 1]), CODES**2]))
+#: 0, the ends of the linear pieces and their neighbours, 1, a sweep, and any
+ANY = np.random.default_rng(21).random(200, np.float32)
+STORED = np.unique(np.concatenate([np.float32([0, 1e-30, 1e-5, 0.04045, 0.040450003, 1]), CODES, ANY]))
+LINEAR = np.unique(np.concatenate([np.float32([0, 1e-30, 1e-5, 0.0031308, 0.0031309, 1]), CODES**2, ANY]))
 #: llvmpipe's pow, in ulp: it is exp2(y log2(x)), and log2 near 1 has no more than absolute accuracy (measured to 81)
 POW_ULP = 100
 

@@ -33,6 +33,8 @@ FRAMES = [
     ((-0.48, 0.6, 0.64), (0.01, 0.02, -0.03)),
 ]
 TEXELS = [(128, 128, 255), (255, 128, 128 + 60), (10, 200, 200), (128, 1, 200), (200, 90, 240)]
+#: any, with blue on the outside: at least 160, a slope of 76 degrees
+ANY = np.random.default_rng(22).integers((30, 30, 160), 256, (20, 3)).tolist()
 
 
 @pytest.mark.parametrize("handedness", [1.0, -1.0])
@@ -40,8 +42,9 @@ TEXELS = [(128, 128, 255), (255, 128, 128 + 60), (10, 200, 200), (128, 1, 200), 
 def test_a_texel_bends_the_normal_in_the_tangent_frame(library, mode, frame, handedness):
     n, t = (np.float32(a) for a in frame)
     n /= np.linalg.norm(n)
-    got = library("normal_map.glsl", mode).perturb_normal_mirrored(n, t, handedness, [texel(*b) for b in TEXELS])
-    want = [perturbed(map(float, n), map(float, t), handedness, b) for b in TEXELS]
+    texels = TEXELS + ANY
+    got = library("normal_map.glsl", mode).perturb_normal_mirrored(n, t, handedness, [texel(*b) for b in texels])
+    want = [perturbed(map(float, n), map(float, t), handedness, b) for b in texels]
     np.testing.assert_allclose(got, np.array(want, float), rtol=0, atol=VECTOR_ATOL)
 
 
