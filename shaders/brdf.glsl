@@ -93,7 +93,7 @@ float V_Hammon(float NoL, float NoV, float alpha)
 }
 
 // The model as the exercise writes it, term by term. Right in the middle of the range. Below roughness 0.1 the rounding of
-// NoH alone is larger than what the highlight is made of; use shade().
+// NoH alone is larger than what the highlight is made of, and at l = -v there is no half vector and it is NaN; use shade().
 vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 {
     float alpha = m.roughness * m.roughness;
