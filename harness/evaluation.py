@@ -1,4 +1,7 @@
-"""The test fragment: a shader of our own around one GLSL function, fed from arrays and read back into arrays."""
+"""The test shader: one of our own around a single GLSL function, fed from arrays and read back into arrays.
+
+It is a compute stage where there is one, and a fragment stage elsewhere; both give the same bits.
+"""
 
 from __future__ import annotations
 

@@ -117,9 +117,6 @@ _PROTOTYPES = {
     "hn_mesh_load": (_POINTER, [_TEXT]),
     "hn_mesh_create": (_POINTER, [_POINTER, _SIZE, _POINTER, _SIZE]),
     "hn_mesh_delete": (None, [_POINTER]),
-    "hn_mesh_fields": (_UINT, [_POINTER]),
-    "hn_mesh_vertex_count": (_SIZE, [_POINTER]),
-    "hn_mesh_index_count": (_SIZE, [_POINTER]),
     "hn_texture_create": (_UINT, [_INT, _INT, _POINTER, _UINT, _UINT, _UINT, _UINT]),
     "hn_texture_delete": (None, [_UINT]),
     "hn_texture_bind": (_INT, [_INT, _UINT]),
@@ -296,10 +293,6 @@ class Mesh:
 
     def __init__(self, handle: int):
         self._handle = handle
-        bits = _library.hn_mesh_fields(handle)
-        self.fields = frozenset(field for field in Field if bits >> field & 1)
-        self.vertex_count = _library.hn_mesh_vertex_count(handle)
-        self.index_count = _library.hn_mesh_index_count(handle)
 
     @classmethod
     def load(cls, path: str | Path) -> Mesh:

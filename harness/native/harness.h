@@ -84,7 +84,7 @@ int hn_program_uniform(uint32_t program, int32_t location, uint32_t type, int32_
 
 /* ---- Evaluation over arrays (evaluate.c, compute.c, arrays.c) ------------------------------------------ */
 
-/* One input array. The fragment shader reads it through the uniform samplerBuffer (isamplerBuffer,
+/* One input array. The shader reads it through the uniform samplerBuffer (isamplerBuffer,
  * usamplerBuffer) called `name`. It is handed to the driver where it lies, not copied, when the driver can
  * read it there. */
 typedef struct {
@@ -95,9 +95,9 @@ typedef struct {
     size_t count;        /* texels; at most hn_evaluate_limit() */
 } hn_input;
 
-/* One output array: fragment output `location`, a vec4, of which the first `components` are kept. */
+/* One output array, of which each element is the first `components` numbers of a vector. */
 typedef struct {
-    float *data; /* count * components floats, as drawn, bit for bit */
+    float *data; /* count * components floats, bit for bit as the shader made them */
     uint32_t components;
 } hn_output;
 
@@ -112,7 +112,7 @@ const char *hn_evaluate_vertex(void);
 /* The most texels an input may have. */
 size_t hn_evaluate_limit(void);
 
-/* Whether the context has compute stages (GL 4.3), which evaluate in half the time. */
+/* Whether the context has compute stages (GL 4.3), which evaluate faster and need no memory of their own. */
 int hn_compute_available(void);
 /* The same by a compute program whose text begins, after its #version, with hn_compute_head(). It finds
  *     i = int(gl_GlobalInvocationID.x), and leaves when i >= hn_count, `uniform int hn_count`.

@@ -22,6 +22,8 @@ DIRECTIONAL_ALBEDO = {
     0.7: [0.9137248, 0.8619134, 0.7927155, 0.7039735, 0.6977504],
     1.0: [0.8477739, 0.7602105, 0.6416481, 0.4506939, 1 - math.log(2)],
 }
+#: The same averaged over the hemisphere, weighted with the cosine: 2 integral of E(mu) mu dmu.
+AVERAGE_ALBEDO = {0.1: 0.9994905, 0.3: 0.9765067, 0.5: 0.8823234, 0.7: 0.7074311, 1.0: 0.4091371}
 #: Half a unit of the sixth digit. The float32 noise of 40 000 samples averages out below it.
 SIX_DIGITS = 5e-7
 #: A white dielectric in a white furnace, by the exercise's model: (roughness, cosine, what it returns).
@@ -96,6 +98,15 @@ def test_directional_albedo(library, mode, roughness):
     shade = library("brdf.glsl", mode).shade
     got = [reflected(shade, cosine, roughness, WHITE_METAL) for cosine in COSINES]
     np.testing.assert_allclose(got, DIRECTIONAL_ALBEDO[roughness], rtol=0, atol=SIX_DIGITS)
+
+
+@pytest.mark.parametrize("roughness", AVERAGE_ALBEDO)
+def test_average_albedo(library, mode, roughness):
+    """Over mu = x^2, which spreads the horizon, where E of a smooth surface bends sharply."""
+    shade = library("brdf.glsl", mode).shade
+    x, weights = gauss(20, 0, 1)
+    values = np.array([reflected(shade, mu, roughness, WHITE_METAL) for mu in x**2])
+    assert float(weights @ (values * 4 * x**3)) == pytest.approx(AVERAGE_ALBEDO[roughness], abs=SIX_DIGITS)
 
 
 @pytest.mark.parametrize(("roughness", "cosine", "stated"), FURNACE_MAXIMUM)
