@@ -73,6 +73,11 @@ def test_call_takes_macros_and_modes(root):
     )
 
 
+def test_a_macro_without_a_value_is_1(tmp_path):
+    (tmp_path / "f.glsl").write_text("float f() { return float(LEVEL) + 0.5; }\n")
+    assert harness("call", "f.glsl", "f", "-D", "LEVEL", cwd=tmp_path).stdout == "1.5\n"
+
+
 def test_call_prints_out_parameters_by_name(tmp_path):
     (tmp_path / "f.glsl").write_text("bool f(float x, out ivec2 y) { y = ivec2(int(x), 7); return x > 1.0; }\n")
     done = harness("call", "f.glsl", "f", "x=2.5", cwd=tmp_path)

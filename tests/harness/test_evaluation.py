@@ -188,3 +188,14 @@ def test_what_only_a_fragment_has_is_evaluated_there(functions, use):
     """A compute stage does not compile with it."""
     got = functions(f"float f(float x) {{ return x + 0.0 * {use}; }}").f([1, 2, 3])
     np.testing.assert_array_equal(got, [1, 2, 3])
+
+
+def test_a_compute_stage_is_used_where_there_is_one(functions, monkeypatch):
+    native.open_context()
+    if not native.compute_available():
+        pytest.skip("this context has no compute stage")
+    used = []
+    compute = native.Program.compute
+    monkeypatch.setattr(native.Program, "compute", lambda text: used.append(text) or compute(text))
+    functions("float f(float x) { return x; }").f(1)
+    assert len(used) == 1

@@ -294,3 +294,28 @@ def test_a_path_that_is_not_below_the_current_folder_is_shown_as_given(write, tm
     folder = write(main=FUNCTION)
     monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
     assert load(folder).path == str(folder / "main.glsl")
+
+
+# ---- Logs ------------------------------------------------------------------------------------------------------------
+
+SOURCE = glsl.Source("main.frag", "first\nsecond\nthird\n", (("main.frag", 1), ("inner.glsl", 7), ("main.frag", 3)))
+
+
+@pytest.mark.parametrize("log", ["ERROR: 0:2: 'x' : undeclared", "0:2(5): error: 'x' : undeclared"])
+def test_a_log_is_told_in_the_users_files(log):
+    """glslang's form and Mesa's."""
+    assert str(SOURCE.error(log)) == "inner.glsl:7: 'x' : undeclared\n    second"
+
+
+def test_a_drivers_warnings_are_no_errors():
+    log = "0:1(1): warning: unused\n0:3(1): error: wrong"
+    assert str(SOURCE.error(log)) == "main.frag:3: wrong\n    third"
+
+
+def test_a_linkers_message_has_no_line():
+    assert str(SOURCE.error("0:0(0): error: function f is recursive")).startswith("main.frag: ")
+
+
+def test_many_errors_are_counted():
+    log = "\n".join(f"0:{n % 3 + 1}(1): error: wrong {n}" for n in range(9))
+    assert str(SOURCE.error(log)).endswith("... and 4 more")

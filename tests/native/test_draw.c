@@ -168,6 +168,33 @@ static void test_state(void) {
     CHECK(hn_target_clear(target, black) == 0 && hn_draw(target, program, far, fields, 1, NULL) == 0);
     CHECK(hn_target_read_floats(target, rgba) == 0 && memcmp(rgba, red, sizeof rgba) == 0);
 
+    /* Each part of a state that is given; without one a back face and what lies beyond the far plane are left out. */
+    hn_mesh *beyond = cover(1.5f);
+    const hn_state both_sides = {GL_NONE, GL_CCW, 0}, clockwise = {GL_BACK, GL_CW, 0},
+                   no_front = {GL_FRONT, GL_CCW, 0}, clamped = {GL_BACK, GL_CCW, 1};
+    const struct {
+        const hn_mesh *mesh;
+        const hn_state *state;
+        int seen;
+    } draws[] = {{back, NULL, 0},      {back, &both_sides, 1}, {back, &clockwise, 1}, {back, &no_front, 1},
+                 {far, &clockwise, 0}, {far, &no_front, 0},    {beyond, NULL, 0},     {near, &clamped, 1}};
+    for (size_t i = 0; i < sizeof draws / sizeof *draws; ++i) {
+        CHECK(hn_target_clear(target, black) == 0);
+        CHECK(hn_draw(target, program, draws[i].mesh, fields, 1, draws[i].state) == 0);
+        CHECK(hn_target_read_floats(target, rgba) == 0);
+        CHECK(memcmp(rgba, draws[i].seen ? red : black, sizeof rgba) == 0);
+    }
+    /* Clamped, what lies before the near plane is at depth 0: drawn, and nothing is nearer. */
+    hn_mesh *before = cover(-1.5f);
+    CHECK(hn_target_clear(target, black) == 0);
+    CHECK(hn_draw(target, program, before, fields, 1, NULL) == 0 && hn_target_read_floats(target, rgba) == 0);
+    CHECK(memcmp(rgba, black, sizeof rgba) == 0);
+    CHECK(hn_draw(target, program, before, fields, 1, &clamped) == 0 &&
+          hn_target_read_floats(target, rgba) == 0);
+    CHECK(memcmp(rgba, red, sizeof rgba) == 0);
+    hn_mesh_delete(beyond);
+    hn_mesh_delete(before);
+
     hn_mesh_delete(near);
     hn_mesh_delete(far);
     hn_mesh_delete(back);

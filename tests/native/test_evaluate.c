@@ -18,7 +18,8 @@ static void test_elements(void) {
                           "void main() { find(); vec3 v = texelFetch(x, i).xyz; int n = texelFetch(k, i).x;\n"
                           "a = vec4(v.z, v.y, v.x, 0.0); b = vec4(float(n)); }\n");
     CHECK(program != 0);
-    static const size_t counts[] = {1, 2, 17, 1000, 1024 * 1024 + 5};
+    static const size_t counts[] = {1, 2, 17, 1000, 2048 * 1024 + 5, 2 * 2048 * 1024 + 4099};
+    /* the last two take two and three tiles, ending in a row begun */
     for (size_t c = 0; c < sizeof counts / sizeof *counts; ++c) {
         size_t n = counts[c];
         float *x = malloc(n * 3 * sizeof *x), *a = malloc(n * 3 * sizeof *a), *b = malloc(n * sizeof *b);
