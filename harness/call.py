@@ -28,12 +28,13 @@ def shader(
 ) -> Shader:
     """The functions of a GLSL file, callable by name.
 
-    ``defines`` are macros, ``include_dirs`` the folders where includes are looked for, before the file's own. ``mode``
-    is "as-written" or "precise" (the driver may not rewrite the arithmetic). GlslError when it does not compile.
+    ``defines`` are macros, ``include_dirs`` the folders where includes are looked for, before those of the including
+    file and of the first one. ``mode`` is "as-written" or "precise" (the driver may not rewrite the arithmetic).
+    GlslError when it does not compile.
     """
     path = Path(path)
     macros = {name: str(text) for name, text in (defines or {}).items()}
-    source = glsl.load(path, macros, [*include_dirs, path.parent], version=glsl.VERSION)
+    source = glsl.load(path, macros, [*include_dirs, path.parent], version=glsl.VERSION, library=True)
     try:
         text = rewrite.isolate(native.glsl_preprocess(Stage.FRAGMENT, source.text))
     except native.NativeError as error:

@@ -19,6 +19,7 @@ VERSION = "#version 330"  # given to files that state none: libraries, which are
 
 # As SHADERed: in column 0, "x" and <x> alike, whatever follows the closing mark.
 _INCLUDE = re.compile(r'#include\s+(?:"([^"]+)"|<([^>]+)>)')
+_LIBRARY_INCLUDE = re.compile(r'[ \t]*#[ \t]*include\s*(?:"([^"]+)"|<([^>]+)>)')
 _GLSLANG_LINE = re.compile(r"^(?:ERROR|WARNING): (?:\d+|[^:]*):(\d+): (.*)$")
 _DRIVER_LINE = re.compile(r"^\d+[:(](\d+)(?:\(\d+\)\s*:|\)\s*:|:)\s*(.*)$")
 
@@ -87,22 +88,38 @@ def _read(path: Path) -> list[str]:
     return lines[:-1] if lines and not lines[-1] else lines
 
 
+def _joined(lines: list[str]) -> list[str]:
+    """The lines with those that end in a backslash joined to the next, which leaves its place empty.
+
+    GLSL knows such lines from 4.20 on only, but drivers take them in all versions, and glslang refuses them below.
+    """
+    joined = list(lines)
+    for k in range(len(lines) - 1, 0, -1):
+        if lines[k - 1].endswith("\\"):
+            joined[k - 1] = lines[k - 1][:-1] + joined[k]
+            joined[k] = ""
+    return joined
+
+
 def _paste(
-    path: Path, include_dirs: Sequence[Path], within: tuple[Path, ...]
+    path: Path, include_dirs: Sequence[Path], library: bool, within: tuple[Path, ...]
 ) -> Iterator[tuple[str, tuple[str, int], str | None]]:
     """Lines of a file with its includes pasted: (text, origin, what to say if the compiler reaches this include)."""
     included = set()
-    for number, text in enumerate(_read(path), 1):
+    folders = [*include_dirs, path.parent] if library else include_dirs
+    pattern = _LIBRARY_INCLUDE if library else _INCLUDE
+    lines = _read(path)
+    for number, text in enumerate(_joined(lines) if library else lines, 1):
         origin = shown_path(path), number
-        match = _INCLUDE.match(text)
+        match = pattern.match(text)
         if not match:
             yield text, origin, None
             continue
         name = match[1] or match[2]
         # os.path: pathlib raises for a name that no file system takes
-        target = next((d / name for d in include_dirs if os.path.isfile(d / name)), None)
+        target = next((d / name for d in folders if os.path.isfile(d / name)), None)
         if target is None:
-            looked = ", ".join(shown_path(d) + os.sep for d in include_dirs)
+            looked = ", ".join(shown_path(d) + os.sep for d in dict.fromkeys(folders))
             # Left as it is, glslang would look for it by itself, in the current folder.
             yield "#error no such file", origin, f'cannot find the included file "{name}" (looked in {looked})'
         elif target in included or target.resolve() in within:
@@ -110,7 +127,7 @@ def _paste(
             yield "", origin, None
         else:
             included.add(target)
-            yield from _paste(target, include_dirs, (*within, target.resolve()))
+            yield from _paste(target, include_dirs, library, (*within, target.resolve()))
 
 
 def load(
@@ -119,16 +136,19 @@ def load(
     include_dirs: Sequence[str | Path] = (),
     *,
     version: str | None = None,
+    library: bool = False,
 ) -> Source:
     """The shader in a file, ready for a compiler.
 
     ``defines`` maps macro names (or ``F(x)``) to their text; they go in after the #version line. Includes are looked
-    for in ``include_dirs``, in order, never beside the including file. A file without #version gets ``version``; where
-    that is None, it is an error. GlslError when the file cannot be read or does not begin with #version.
+    for in ``include_dirs``, in order, as SHADERed does. A ``library`` may expect more: its includes are looked for
+    beside the including file too and may be indented, and its lines may go on after a backslash. A file without
+    #version gets ``version``; where that is None, it is an error. GlslError when the file cannot be read or does not
+    begin with #version.
     """
     path = Path(path)
     try:
-        lines = list(_paste(path, [Path(d) for d in include_dirs], (path.resolve(),)))
+        lines = list(_paste(path, [Path(d) for d in include_dirs], library, (path.resolve(),)))
     except OSError as error:
         raise GlslError(f"cannot read the shader: {error.strerror}", error.filename or path) from error
     macros = [

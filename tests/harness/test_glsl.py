@@ -73,10 +73,37 @@ def test_shader_looks_beside_the_file_last(write):
     assert shader(folder / "main.glsl", include_dirs=[folder / "lib"]).f() == 2
 
 
-def test_an_included_file_is_not_looked_for_beside_the_including_one(write):
-    folder = write(main='#include "lib/a.glsl"\n', **{"lib/a.glsl": '#include "b.glsl"\n', "lib/b.glsl": "one\n"})
-    with pytest.raises(GlslError, match='cannot find the included file "b.glsl"'):
-        shader(folder / "main.glsl")
+@pytest.fixture
+def nested(write):
+    """A file that includes lib/a.glsl, which includes its neighbour by its bare name."""
+    inner = {"lib/a.glsl": '#include "b.glsl"\n', "lib/b.glsl": "float f() { return 2.0; }\n"}
+    return write(main='#include "lib/a.glsl"\n', **inner)
+
+
+def test_a_shader_of_shadered_is_not_looked_for_beside_the_including_file(nested):
+    assert body(load(nested)) == ["#error no such file"]
+
+
+def test_a_library_is_looked_for_beside_the_including_file(nested):
+    assert shader(nested / "main.glsl").f() == 2
+
+
+def test_the_folders_named_come_before_that_of_the_including_file(nested, write):
+    write(**{"first/b.glsl": "float f() { return 1.0; }\n"})
+    assert shader(nested / "main.glsl", include_dirs=[nested / "first"]).f() == 1
+
+
+@pytest.mark.parametrize("line", ['  #include "a.glsl"', '# include "a.glsl"', '#include"a.glsl"'])
+def test_a_library_may_indent_its_includes(write, line):
+    folder = write(main=f"{line}\n", **{"a.glsl": "float f() { return 2.0; }\n"})
+    assert shader(folder / "main.glsl").f() == 2
+
+
+def test_a_library_may_continue_its_lines_after_a_backslash(write):
+    folder = write(main="#define TWICE(x) \\\n  ((x) + \\\n  (x))\nfloat f(float x) { return TWICE(x); }\n")
+    f = shader(folder / "main.glsl").f
+    assert f(3) == 6
+    assert f.signatures[0].origin[1] == 4
 
 
 def test_a_path_may_lead_through_folders(write):
