@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from . import library, overloads
-from .errors import CallError, did_you_mean
+from .errors import CallError, among
 from .function import Function, known_mode
 
 
@@ -57,9 +57,8 @@ class Shader:
         plain = overloads.named(name)
         if plain in self._functions:
             return self._functions[plain][name] if "(" in name else self._functions[plain]
-        hint = did_you_mean(plain, self._functions)
-        there = ", ".join(sorted(self._functions)) or "none at all"
-        raise _NoFunctionError(f"no function {plain}{hint}; there are: {there}", self._library.path)
+        message = f"no function {plain}{among(plain, self._functions)}"
+        raise _NoFunctionError(message, self._library.path)
 
     def __iter__(self):
         return iter(self._functions.values())

@@ -48,7 +48,7 @@ def choose(overloads: Sequence[Signature], args: Sequence, kwargs: Mapping[str, 
     if fitting:
         listed = "".join(f"\n    {fit.signature}" for fit in fitting)
         example = key(fitting[0].signature)
-        message = f'more than one overload fits these arguments; choose one, as in ["{example}"]; there are:{listed}'
+        message = f'more than one overload fits these arguments; choose one by shader["{example}"]; there are:{listed}'
     else:
         listed = "".join(f"\n    {signature}: {message}" for signature, message in errors)
         message = f"no overload fits these arguments; there are:{listed}"

@@ -82,6 +82,8 @@ def _short(value: Any) -> str:
         return repr(value) if hasattr(value, "_fields") else f"({', '.join(map(_short, value))})"
     if not np.ndim(value):
         return str(value)
-    text = np.array2string(value, separator=", ", threshold=_SHOWN, edgeitems=1, max_line_width=10**6)
+    text = np.array2string(
+        value, separator=", ", threshold=_SHOWN, edgeitems=1, max_line_width=10**6, formatter={"all": str}
+    )
     text = " ".join(text.split())
     return text if value.size <= _SHOWN else f"{text} {value.shape}"

@@ -238,7 +238,7 @@ def test_a_wrong_call_says_what_was_expected_and_where_it_is(called, call):
 def test_an_unknown_function_lists_those_that_there_are(called):
     error = refusal(lambda: called.g)
     assert error.message == (
-        "no function g; there are: chosen, f, gained, lit, many, nothing, of_array, of_lights, sampled"
+        "no function g; there are: f, lit, chosen, gained, many, of_array, of_lights, nothing, sampled"
     )
     assert str(error).startswith(error.file)
 
@@ -269,7 +269,7 @@ def test_a_file_without_functions_says_so(write):
         ),
         (
             lambda s: s.many(np.ones(3)),  # a vec3, or three floats
-            'many: more than one overload fits these arguments; choose one, as in ["many(float)"]; there are:'
+            'many: more than one overload fits these arguments; choose one by shader["many(float)"]; there are:'
             "\n    float many(float x)\n    float many(vec3 x)",
         ),
     ],
