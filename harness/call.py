@@ -49,7 +49,7 @@ class Shader:
         return Shader(self._library, mode)
 
     def __getattr__(self, name: str) -> Function:
-        if name.startswith("__") or name == "_functions":  # the latter when Python's own tools copy what is not made
+        if name.startswith("__"):  # what Python's own tools ask for
             raise AttributeError(name)
         return self[name]
 

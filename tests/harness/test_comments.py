@@ -26,6 +26,11 @@ COMMENTS = {
     "of the function above": ("// Not this.\nvoid g() {}\nfloat f(float x) { return x; }\n", ""),
     "above a prototype": ("// Not this.\nfloat f(float x);\n// This.\nfloat f(float x) { return x; }\n", "This."),
     "above a block": ("// Not this.\n/* This. */\nfloat f(float x) { return x; }\n", "This."),
+    "below a block": ("/* Not this. */\n// This.\nfloat f(float x) { return x; }\n", "This."),
+    "a macro below a prototype": (
+        "// Not this.\nfloat f(float x);\n#define MAKE(n) float n(float x) { return x; }\n// This.\nMAKE(f)\n",
+        "This.",
+    ),
     "below a directive": ("#define A\n// This.\nfloat f(float x) { return x; }\n", "This."),
     "above a directive": ("// Not this.\n#define A\nfloat f(float x) { return x; }\n", ""),
     "over several lines": (

@@ -192,7 +192,7 @@ CALLS = {
     "text": ("f", lambda f: f("abc", 1), "v is a vec3, got numbers of type <U3"),
     "nothing given": ("f", lambda f: f(None, 1), "v is a vec3, got None"),
     "complex": ("f", lambda f: f([1j, 2, 3], 1), "got numbers of type complex128"),
-    "float for int": ("chosen", lambda f: f(1.5, 1, True), "i is an int, got numbers of type float64"),
+    "float for int": ("chosen", lambda f: f(1.5, 1, True), "i is an int, got numbers of type float64; it is"),
     "int for bool": ("chosen", lambda f: f(1, 1, 1), "b is a bool, got numbers of type int64"),
     "bool for int": ("chosen", lambda f: f(True, 1, True), "i is an int, got numbers of type bool"),
     "int too large": ("chosen", lambda f: f(2**31, 1, True), "i is an int: -2147483648 ... 2147483647"),

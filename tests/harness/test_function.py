@@ -217,6 +217,7 @@ ways = {
     "in place": lambda n: f(own[:n], own[:n], gain=2, out=out[:n]),
     "a row and a column": lambda n: f(side, np.arange(n >> 10)[:, None], gain=2, out=out[:n].reshape(n >> 10, 1024)),
     "vectors and bool": lambda n: pair(halves[:n], out=(vectors[:n], on[:n])),
+    "bool": lambda n: made.positive(own[:n]),
     "a stream": lambda n: [None for _ in f.stream(({"x": np.ones(2**17)} for _ in range(n >> 17)), y=1, gain=2)],
 }
 for way in ways.values():
@@ -233,9 +234,10 @@ for name, way in ways.items():
 def test_memory_does_not_grow_with_the_batch(tmp_path):
     """4.2 million elements take 16 MiB and more as float32; 12 MiB are allowed."""
     text = "uniform float gain;\nfloat gained(float x, float y) { return gain * x + y; }\n"
+    text += "bool positive(float x) { return x > 0.0; }\n"
     (tmp_path / "f.glsl").write_text(text + "vec3 pair(vec3 v, out bool on) { on = v.x > 0.0; return v; }\n")
     done = subprocess.run([sys.executable, "-c", MEMORY], cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    ways = ["converted", "in place", "a row and a column", "vectors and bool", "a stream"]
+    ways = ["converted", "in place", "a row and a column", "vectors and bool", "bool", "a stream"]
     assert (done.stdout.split("\n")[:-1], done.returncode) == (ways, 0), done.stderr
 
 

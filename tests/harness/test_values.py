@@ -13,11 +13,15 @@ from harness.values import read, written
 
 
 def test_every_float32_is_read_back_to_the_bit():
-    """Random bits, all powers of two and their neighbours, and powers of ten; NaN apart, of which there is one only."""
+    """Random bits, all powers of two and their neighbours, powers of ten, and what numpy's shortest decimals miss.
+
+    NaN apart, of which there is one only.
+    """
     random = np.random.default_rng(1).integers(0, 2**32, 20_000, np.uint32).view(np.float32)
     powers = np.float32(2.0) ** np.arange(-149, 128, dtype=np.float32)
     tens = np.float32([f"1e{n}" for n in range(-45, 39)])
-    x = np.concatenate([random, powers, np.nextafter(powers, np.float32(0)), tens, -tens, EXTREMES["float"]])
+    missed = np.float32([float.fromhex("0x1.5c87fap-84")])
+    x = np.concatenate([random, powers, missed, np.nextafter(powers, np.float32(0)), tens, -tens, EXTREMES["float"]])
     x = x[~np.isnan(x)]
     back = np.array([read(written(value)) for value in x], np.float64).astype(np.float32)
     assert back.tobytes() == x.tobytes()
@@ -33,6 +37,7 @@ def test_every_float32_is_read_back_to_the_bit():
         (0.1 + 1e-12, "0.1"),  # float64, that goes to GLSL as float32
         (1e300, "inf"),
         (np.float32("nan"), "nan"),
+        (np.float32(float.fromhex("0x1.5c87fap-84")), "0x1.5c87fa0000000p-84"),  # rounded twice, 7.038531e-26 is next
         (np.uint32(2**32 - 1), "4294967295"),
         (True, "true"),
         ([1, 2], "1,2"),
