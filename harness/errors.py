@@ -5,6 +5,7 @@ Only the command line turns them into text and an exit code; everywhere else the
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 
@@ -33,3 +34,18 @@ class CallError(HarnessError, TypeError):
 
 class NativeError(HarnessError):
     """The native library or the driver under it refuses; the message names the operation."""
+
+
+def did_you_mean(name: str, there: Iterable[str]) -> str:
+    """What a message about an unknown name ends with: the nearest of the names that there are, or nothing."""
+    from difflib import get_close_matches  # errors alone pay for it
+
+    by_case = {known.lower(): known for known in there}
+    near = get_close_matches(name.lower(), by_case, 1)
+    return f"; did you mean {by_case[near[0]]}?" if near else ""
+
+
+def among(name: str, there: Iterable[str]) -> str:
+    """The same, with the names that there are."""
+    hint = did_you_mean(name, there)
+    return f"{hint}{' There' if hint else '; there'} are: {', '.join(there) or 'none at all'}"
