@@ -17,7 +17,7 @@ define install_extra
 @touch $@
 endef
 
-.PHONY: help render test test-conformance test-sanitize bench lint format build models textures clean
+.PHONY: help render test test-conformance test-backends test-sanitize bench lint format build models textures clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -31,6 +31,10 @@ test: $(VENV)/.harness $(VENV)/.test ## all tests
 
 test-conformance: $(VENV)/.harness $(VENV)/.test ## the pictures of SHADERed itself, case by case
 	$(BIN)/python -m pytest -rA tests/harness/test_conformance.py
+
+test-backends: $(VENV)/.harness $(VENV)/.test ## all tests by EGL, and by GLFW on a display of their own
+	HARNESS_BACKEND=egl $(BIN)/python -m pytest
+	HARNESS_BACKEND=glfw xvfb-run -a $(BIN)/python -m pytest
 
 test-sanitize: $(VENV)/bin/python ## the C library under AddressSanitizer and UBSan
 	cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_BUILD_TYPE=Debug -DHARNESS_TESTS=ON -DHARNESS_SANITIZE=ON
@@ -76,7 +80,8 @@ $(VENV)/.harness: pyproject.toml $(NATIVE) $(VENV)/.apt | $(VENV)/bin/python
 	@$(PIP) --editable .
 	@touch $@
 
-$(VENV)/.test: pyproject.toml | $(VENV)/.harness
+$(VENV)/.test: pyproject.toml setup/apt.sh | $(VENV)/.harness
+	@./setup/apt.sh test
 	$(call install_extra,test)
 
 $(VENV)/.bench: pyproject.toml | $(VENV)/.test

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs the Debian packages that are missing, saying what each is for. Usage: setup/apt.sh [bench]
+# Installs the Debian packages that are missing, saying what each is for. Usage: setup/apt.sh [test|bench]
 set -euo pipefail
 
 packages=(
@@ -7,6 +7,8 @@ packages=(
     "cmake|configures its build"
     "ninja-build|runs its build"
     "libosmesa6-dev|OpenGL in software, without a display or a GPU"
+    "libegl-dev|OpenGL on a GPU without a display"
+    "libglfw3-dev|OpenGL in a window"
     "libgl-dev|OpenGL's headers"
     "glslang-dev|the GLSL compiler that SHADERed uses too"
     "glslang-tools|without it glslang's build files refuse to load"
@@ -15,8 +17,11 @@ packages=(
     "zlib1g-dev|linked by Assimp"
     "python3-venv|keeps Python's packages in .venv"
 )
-if [ "${1:-}" = bench ]; then
-    packages+=("libegl1|moderngl's context, to compare with" "libgl1-mesa-dri|the driver under it")
+if [ "${1:-}" = test ] || [ "${1:-}" = bench ]; then
+    packages+=("libgl1-mesa-dri|the driver under EGL and windows, to compare with")
+fi
+if [ "${1:-}" = test ]; then
+    packages+=("xvfb|a display for the windows of tests" "xauth|lets programs onto it")
 fi
 
 missing=()

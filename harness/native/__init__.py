@@ -17,6 +17,8 @@ import numpy as np
 from ..errors import NativeError
 from . import gl_enums
 
+BACKENDS = ("osmesa", "egl", "glfw")
+BACKEND_VARIABLE = "HARNESS_BACKEND"  # which of them, where the caller does not choose
 LIBRARY_VARIABLE = "HARNESS_NATIVE_LIB"  # names another build of the library, e.g. with sanitizers
 
 
@@ -95,6 +97,7 @@ _VARIABLES = ctypes.POINTER(_Variable)
 _PROTOTYPES = {
     "hn_error": (_TEXT, []),
     "hn_free": (None, [_POINTER]),
+    "hn_context_choose": (_INT, [_TEXT]),
     "hn_context_open": (_INT, []),
     "hn_context_close": (None, []),
     "hn_context_info": (_TEXT, []),
@@ -177,17 +180,29 @@ def _take_text(pointer: int | None) -> str:
     return text
 
 
+def choose_backend(name: str) -> None:
+    """Says which library makes the context, one of BACKENDS, before the first use.
+
+    Processes started from here use it too. NativeError when there is no such backend, or this process has drawn with
+    another.
+    """
+    _done(_library.hn_context_choose(name.encode()))
+    os.environ[BACKEND_VARIABLE] = name
+
+
 def open_context() -> None:
     """Opens the process's one context; does nothing when it is open."""
+    if name := os.environ.get(BACKEND_VARIABLE):
+        _done(_library.hn_context_choose(name.encode()))
     _done(_library.hn_context_open())
 
 
 def context_info() -> dict[str, str]:
-    """What draws: ``renderer``, ``version`` and ``glsl`` of the open context."""
+    """What draws: ``renderer``, ``version``, ``glsl`` and ``backend`` of the open context."""
     text = _library.hn_context_info()
     if text is None:
         raise _error()
-    return dict(zip(("renderer", "version", "glsl"), text.decode().split("\n"), strict=True))
+    return dict(zip(("renderer", "version", "glsl", "backend"), text.decode().split("\n"), strict=True))
 
 
 def glsl_check(stage: Stage, text: str, *, spirv: bool) -> None:

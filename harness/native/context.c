@@ -1,51 +1,56 @@
-/* context.c: the one OpenGL context of the process, by OSMesa: no display, no GPU, no window system. */
-#include "internal.h"
-
-#include <GL/osmesa.h>
+/* context.c: the one OpenGL context of the process, whichever backend makes it. */
+#include "backend.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-static OSMesaContext context;
+static const hn_backend *const backends[] = {&hn_backend_osmesa, &hn_backend_egl, &hn_backend_glfw};
+enum { N_BACKENDS = sizeof backends / sizeof *backends };
+
+static const hn_backend *chosen = &hn_backend_osmesa;
+static int opened_once, is_open;
 static uint32_t context_id, last_id;
 static GLuint vertex_array;
 static char *info;
-/* OSMesa wants a window to draw to; all our drawing goes to framebuffer objects. */
-static uint32_t window[1];
+
+int hn_context_choose(const char *backend) {
+    for (int k = 0; k < N_BACKENDS; ++k)
+        if (strcmp(backends[k]->name, backend) == 0) {
+            if (opened_once && backends[k] != chosen)
+                return hn_fail(
+                    "hn_context_choose: this process has drawn with %s, and two libraries of OpenGL in "
+                    "one process crash: use %s in a process of its own",
+                    chosen->name, backend);
+            chosen = backends[k];
+            return 0;
+        }
+    return hn_fail("hn_context_choose: no backend %s; there are: osmesa, egl, glfw", backend);
+}
 
 static char *describe(void) {
-    const char *format = "%s\n%s\n%s";
+    const char *format = "%s\n%s\n%s\n%s";
     const char *renderer = (const char *)gl.GetString(GL_RENDERER);
     const char *version = (const char *)gl.GetString(GL_VERSION);
     const char *glsl = (const char *)gl.GetString(GL_SHADING_LANGUAGE_VERSION);
-    int length = snprintf(NULL, 0, format, renderer, version, glsl);
+    int length = snprintf(NULL, 0, format, renderer, version, glsl, chosen->name);
     char *text = length < 0 ? NULL : malloc((size_t)length + 1);
     if (text)
-        snprintf(text, (size_t)length + 1, format, renderer, version, glsl);
+        snprintf(text, (size_t)length + 1, format, renderer, version, glsl, chosen->name);
     return text;
 }
 
 int hn_context_open(void) {
-    if (context)
+    if (is_open)
         return hn_context_check("hn_context_open");
 
-    const int attributes[] = {OSMESA_FORMAT,
-                              OSMESA_RGBA,
-                              OSMESA_PROFILE,
-                              OSMESA_CORE_PROFILE,
-                              OSMESA_CONTEXT_MAJOR_VERSION,
-                              3,
-                              OSMESA_CONTEXT_MINOR_VERSION,
-                              3,
-                              0};
-    context = OSMesaCreateContextAttribs(attributes, NULL);
-    if (!context)
-        return hn_fail("hn_context_open: OSMesa makes no OpenGL 3.3 core context");
-    if (!OSMesaMakeCurrent(context, window, GL_UNSIGNED_BYTE, 1, 1)) {
+    is_open = 1;
+    if (chosen->open()) {
         hn_context_close();
-        return hn_fail("hn_context_open: OSMesa cannot make its context current");
+        return -1;
     }
-    if (hn_gl_load(OSMesaGetProcAddress)) {
+    opened_once = 1;
+    if (hn_gl_load(chosen->get)) {
         hn_context_close();
         return -1;
     }
@@ -64,11 +69,10 @@ int hn_context_open(void) {
 }
 
 void hn_context_close(void) {
-    if (!context)
+    if (!is_open)
         return;
-    OSMesaMakeCurrent(NULL, NULL, GL_UNSIGNED_BYTE, 0, 0);
-    OSMesaDestroyContext(context);
-    context = NULL;
+    chosen->close();
+    is_open = 0;
     context_id = 0;
     vertex_array = 0;
     hn_gl_unload();
@@ -81,9 +85,9 @@ const char *hn_context_info(void) {
 }
 
 int hn_context_check(const char *operation) {
-    if (!context)
+    if (!is_open)
         return hn_fail("%s: no context: call hn_context_open() first", operation);
-    if (OSMesaGetCurrentContext() != context)
+    if (!chosen->is_current())
         return hn_fail("%s: the context belongs to the thread that opened it", operation);
     return 0;
 }

@@ -37,10 +37,14 @@ void hn_free(void *memory);
 
 /* ---- Context (context.c) ------------------------------------------------------------------------------- */
 
-/* Makes the process's one context (OSMesa, core profile). Calling it again does nothing. */
+/* Which library makes the context: "osmesa" (Mesa in software, without a display; what is taken unless another is
+ * chosen), "egl" (a GPU without a display, else software), "glfw" (the desktop's driver, by a hidden window).
+ * Fails for another when this process has opened a context already. */
+int hn_context_choose(const char *backend);
+/* Makes the process's one context (core profile). Calling it again does nothing. */
 int hn_context_open(void);
 void hn_context_close(void);
-/* "renderer\nversion\nGLSL version" of the open context. */
+/* "renderer\nversion\nGLSL version\nbackend" of the open context. */
 const char *hn_context_info(void);
 
 /* ---- GLSL through glslang (glslang.c); needs no context ------------------------------------------------ */

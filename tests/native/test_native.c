@@ -5,6 +5,7 @@
 #include <threads.h>
 
 int n_passed, n_failed;
+static const char *backend = "osmesa";
 
 hn_mesh *cover(float z) {
     const hn_vertex vertices[] = {{.position = {-1, -1, z}, .texcoord = {0, 0}},
@@ -32,6 +33,9 @@ static void test_no_context(void) {
     const uint8_t pixel[4] = {0};
     const float value = 0, black[4] = {0};
     hn_variable variable;
+    CHECK_FAILS(hn_context_choose("x") == -1, "no backend x; there are: osmesa, egl, glfw");
+    CHECK(hn_context_choose("glfw") == 0); /* nothing is open: the last choice holds */
+    CHECK(hn_context_choose(backend) == 0);
     CHECK_FAILS(hn_context_info() == NULL, reason);
     CHECK_FAILS(hn_program_create("", "") == 0, reason);
     CHECK_FAILS(hn_program_uniforms(1, &variable, 1) == -1, reason);
@@ -60,7 +64,10 @@ static void test_open_and_close(void) {
     CHECK(hn_context_open() == 0);
     CHECK(hn_context_open() == 0);
     const char *info = hn_context_info();
-    CHECK(info && strchr(info, '\n') && strchr(strchr(info, '\n') + 1, '\n'));
+    CHECK(info && strcmp(strrchr(info, '\n') + 1, backend) == 0);
+    CHECK(hn_context_choose(backend) == 0);
+    CHECK_FAILS(hn_context_choose(strcmp(backend, "egl") ? "egl" : "osmesa") == -1,
+                "two libraries of OpenGL in one process crash");
     printf("%s\n", info ? info : "");
 
     /* What a closed context leaves can be deleted, and is refused, not mistaken for the next context's. */
@@ -119,7 +126,9 @@ static int leak(void) {
 int main(int argc, char **argv) {
     if (argc > 1 && strcmp(argv[1], "--leak") == 0)
         return leak();
-    test_glsl(); /* first: it must do without a context */
+    if (argc > 1)
+        backend = argv[1]; /* all of the tests hold for each */
+    test_glsl();           /* first: it must do without a context */
     test_context();
     test_program();
     test_mesh();
