@@ -13,11 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from . import glsl, native, rewrite
+from . import dialect, glsl, native, rewrite
 from .errors import CallError
 from .evaluation import MODES, Evaluation, Leaf, leaves
 from .native import Stage, gl_enums
-from .signature import DTYPES, Array, Numeric, Parameter, Signature, Struct, Type, signatures
+from .signature import DTYPES, Array, Numeric, Opaque, Parameter, Signature, Struct, Type, signatures
+from .texture_argument import SAMPLERS, Texture
 
 
 def shader(
@@ -29,7 +30,8 @@ def shader(
     """The functions of a GLSL file, callable by name.
 
     ``defines`` are macros, ``include_dirs`` the folders where includes are looked for, before the file's own. ``mode``
-    is "as-written" or "precise" (the driver may not rewrite the arithmetic). GlslError when it does not compile.
+    is one of ``MODES``: "as-written", "precise" (the driver may not rewrite the arithmetic), or "mediump" (half precision,
+    not rewritten either). GlslError when it does not compile.
     """
     path = Path(path)
     macros = {name: str(text) for name, text in (defines or {}).items()}
@@ -39,7 +41,7 @@ def shader(
     except native.NativeError as error:
         raise source.error(str(error)) from None
     plain = replace(source, text=text, written=source.text)
-    functions = signatures(plain, rewrite.struct_names(text), rewrite.result_names(text))
+    functions = signatures(dialect.checked(plain), rewrite.struct_names(text), rewrite.result_names(text))
     return Shader(plain, functions, mode)
 
 
@@ -109,6 +111,8 @@ class Function:
             self._compiled[signature] = Evaluation(self._source, signature, self._mode)
         evaluation = self._compiled[signature]
         self._set_uniforms(evaluation, rest)
+        for name in (p.name for p in signature.inputs if isinstance(p.type, Opaque)):
+            evaluation.set_sampler(name, arguments[name])
         return _evaluate(evaluation, arguments)
 
     def _overload(self, args: tuple, kwargs: dict) -> tuple[Signature, dict[str, list[np.ndarray]], dict]:
@@ -139,6 +143,14 @@ class Function:
                 raise CallError(f"{evaluation.signature} has no parameter {name} and reads no such uniform", *where)
         for name, uniform in evaluation.uniforms.items():
             kind = gl_enums.GLSL_TYPE_NAMES.get(uniform.type, f"type 0x{uniform.type:x}")
+            if kind in SAMPLERS and name in given:
+                evaluation.set_sampler(name, given[name])
+                continue
+            if name in evaluation.initial and name not in given:
+                evaluation.reset_uniform(name)
+                continue
+            if kind in SAMPLERS:
+                raise CallError(f"{self.__name__} reads the uniform {kind} {name}: give it a Texture by its name", *where)
             if kind not in _UNIFORM_TYPES:
                 raise CallError(f"{self.__name__} reads the uniform {kind} {name}, which cannot be given", *where)
             if uniform.location < 0:
@@ -190,8 +202,12 @@ def _bind(signature: Signature, args: tuple, kwargs: dict) -> tuple[dict[str, An
     return given, rest
 
 
-def _numbers(parameter: Parameter, value: Any) -> list[np.ndarray]:
-    """The leaves of an argument, in the order of ``evaluation.leaves``: arrays (..., *shape of the leaf)."""
+def _numbers(parameter: Parameter, value: Any) -> list[np.ndarray] | Texture:
+    """The leaves of an argument, in the order of ``leaves``: arrays (..., *shape of the leaf). A texture as it is."""
+    if isinstance(parameter.type, Opaque) and parameter.type.name in SAMPLERS:
+        if not isinstance(value, Texture):
+            raise CallError(f"{parameter.name} is a {parameter.type}: a harness.Texture, got {type(value).__name__}")
+        return value
     return list(_leaf_arrays(parameter.type, value, parameter.name))
 
 
@@ -200,6 +216,7 @@ def _conversions(signature: Signature, numbers: Mapping[str, list[np.ndarray]]) 
     return sum(
         array.dtype.kind != np.dtype(DTYPES[leaf.type.base]).kind
         for p in signature.inputs
+        if not isinstance(p.type, Opaque)
         for leaf, array in zip(leaves(p.type), numbers[p.name], strict=True)
     )
 

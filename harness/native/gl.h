@@ -64,6 +64,8 @@
     X(PFNGLGETSTRINGPROC, GetString)                             \
     X(PFNGLGETSTRINGIPROC, GetStringi)                           \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
+    X(PFNGLGETUNIFORMFVPROC, GetUniformfv)                       \
+    X(PFNGLGETUNIFORMIVPROC, GetUniformiv)                       \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
     X(PFNGLREADBUFFERPROC, ReadBuffer)                           \

@@ -65,7 +65,7 @@ static void test_compute(void) {
             memory[i] = -1;
         const hn_input input = {"x", x, GL_FLOAT, 3, N};
         const hn_output output = {memory + GUARD + shift, 2};
-        CHECK(hn_compute(program, &input, 1, &output, 1, N) == 0);
+        CHECK(hn_compute(program, &input, 1, &output, 1, N, 1) == 0);
         size_t wrong = 0;
         for (int i = 0; i < N; ++i)
             wrong += output.data[2 * i] != x[3 * i + 2] || output.data[2 * i + 1] != x[3 * i];
@@ -75,12 +75,12 @@ static void test_compute(void) {
     }
     const hn_input input = {"x", x, GL_FLOAT, 3, N};
     const hn_output output = {memory, 2}, no_components = {memory, 0};
-    CHECK(hn_compute(program, &input, 1, &output, 1, 0) == 0);
+    CHECK(hn_compute(program, &input, 1, &output, 1, 0, 1) == 0);
     CHECK(hn_compute_limit(4) > 1000000 && hn_compute_limit(4) % 4 == 0);
     CHECK(hn_compute_limit(1) >= hn_compute_limit(4));
-    CHECK_FAILS(hn_compute(program, &input, 1, &output, 1, (size_t)1 << 40) == -1, "at a time");
-    CHECK_FAILS(hn_compute(program, &input, 1, &no_components, 1, N) == -1, "0 components");
-    CHECK_FAILS(hn_compute(9999, &input, 1, &output, 1, N) == -1, "GL_INVALID_VALUE");
+    CHECK_FAILS(hn_compute(program, &input, 1, &output, 1, (size_t)1 << 40, 1) == -1, "at a time");
+    CHECK_FAILS(hn_compute(program, &input, 1, &no_components, 1, N, 1) == -1, "0 components");
+    CHECK_FAILS(hn_compute(9999, &input, 1, &output, 1, N, 1) == -1, "GL_INVALID_VALUE");
     CHECK_FAILS(hn_program_create_compute("#version 430\nvoid main() { x; }\n") == 0, "compute: ");
     CHECK_FAILS(hn_program_create_compute(NULL) == 0, "no text");
     free(x);
