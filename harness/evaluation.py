@@ -231,11 +231,11 @@ class Evaluation:
                 f"fragment stage cannot be told from where the software renderer stops loops silently ({loops.CAP})",
                 *self.signature.origin,
             )
-        line = self._stage.line_of_longest(arrays, [*planes, passes], count)
+        line = self._stage.line_where_stopped(arrays, [*planes, passes], count)
         if line:
             raise CallError(
-                f"a loop of {self.signature} is endless or too long: with it the loops ran {loops.CAP} passes, where the "
-                "software renderer stops silently; give it a smaller bound",
+                f"the loops of {self.signature} ran {loops.CAP} passes for one element, this one the last, where the software "
+                "renderer stops them silently: it is endless, or needs a smaller bound",
                 *self._source.origin(line),
             )
 

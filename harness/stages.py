@@ -19,6 +19,7 @@ from .signature import Signature
 VECTOR = 4  # numbers of a fragment's output
 OUTPUTS_MAX = 8  # outputs of a fragment, and blocks of a compute stage, that GL promises
 NUMBERS_OF_WIDE = 64  # numbers in and out of a function above which several elements at once do not pay
+ALONE_AT_ONCE = 64  # elements that are evaluated at once, each by a group of its own: few, for they may be endless
 #: elements from which on another program, for several at once, pays
 COUNT_OF_WIDE = 1 << 15
 
@@ -123,15 +124,29 @@ class ComputeStage:
             rest = {buffer: a if len(a) == 1 else a[done:] for buffer, a in arrays.items()}
             self.program.evaluate(self._texels(rest), [plane[done:] for plane in planes], count - done)
 
-    def line_of_longest(self, arrays: Mapping[str, np.ndarray], planes: Sequence[np.ndarray], count: int) -> int:
-        """The line of a loop that reached the driver's cap; 0 when none did. ``planes`` are written again."""
+    def line_where_stopped(self, arrays: Mapping[str, np.ndarray], planes: Sequence[np.ndarray], count: int) -> int:
+        """The line of a loop that the driver stopped; 0 when it stopped none. ``planes`` are written again.
+
+        A group of elements that part ways takes more passes than any of them. So where a group reached the cap its
+        elements are evaluated each by itself, by a group of its own.
+        """
         lanes_ = lanes()
         if self._groups is None:
-            counter, start = loops.COUNT_GROUPS.format(lanes_), loops.START_GROUP.format(lanes_)
-            self._groups = self._made(1, counter, start)
+            self._groups = self._made(1, loops.COUNT_GROUPS.format(lanes_), loops.START_GROUP.format(lanes_))
             self._prepare(self._groups)
         self._groups.evaluate(self._texels(arrays), planes, count)
-        return int(planes[-1].view(np.int32).max(initial=0))
+        if not planes[-1].view(np.int32).any():
+            return 0
+        for first in range(0, count, ALONE_AT_ONCE):
+            n = min(ALONE_AT_ONCE, count - first)
+            some = {b: a if len(a) == 1 else np.repeat(a[first : first + n], lanes_, axis=0) for b, a in arrays.items()}
+            repeated = [np.empty((n * lanes_, plane.shape[1]), np.float32) for plane in planes]
+            self._groups.evaluate(self._texels(some), repeated, n * lanes_)
+            if line := int(repeated[-1].view(np.int32).max()):
+                return line
+            for plane, values in zip(planes, repeated, strict=True):
+                plane[first : first + n] = values[::lanes_]
+        return 0
 
     def _texels(self, arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
         return texels(self._job.inputs, arrays)

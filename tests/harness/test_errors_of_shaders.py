@@ -212,7 +212,7 @@ CALLS = {
     "uniform's type": ("gained", lambda f: f(1, gain="x"), "gain is a float, got numbers of type <U1"),
     "uniform of another": ("f", lambda f: f([1, 2, 3], 1, gain=1), "has no parameter gain and reads no such uniform"),
     "nothing comes back": ("nothing", lambda f: f(1), "void nothing(float x) yields nothing"),
-    "sampler": ("sampled", lambda f: f(1), "map is a sampler2D, which cannot be given as an array"),
+    "sampler": ("sampled", lambda f: f(1), "map is a sampler2D: a harness.Texture, got int"),
 }
 
 
