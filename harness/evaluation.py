@@ -65,7 +65,7 @@ class Evaluation:
         if not any(parts for _, parts in self.outputs):
             raise CallError(f"{signature} yields nothing", *signature.origin)
         given = [(name, buffer, leaf) for name, buffers in self.inputs for buffer, leaf in buffers]
-        inputs = Inputs(given, self.samplers, packed=len(given) > BUFFERS_MAX)
+        inputs = Inputs(given, dict(self.samplers), packed=len(given) > BUFFERS_MAX)
         self._set: dict[str, tuple[int, np.ndarray]] = {}
         self._textures: dict[str, Texture] = {}
         self._open(mode)
@@ -150,17 +150,14 @@ class Evaluation:
         self._textures[name] = texture
 
     def _set_everywhere(self, name: str, kind: int, value: np.ndarray) -> None:
-        name = name if name in self._stage.program.uniforms else name + _FIRST
         self._set[name] = kind, value
         for program in self._stage.programs():
-            if name in program.uniforms:
-                program.set_uniform(name, kind, value)
+            _set_uniform(program, name, kind, value)
 
     def _prepare(self, program: native.Program) -> None:
         """Sets the uniforms of a program that was compiled after they were given."""
         for name, (kind, value) in self._set.items():
-            if name in program.uniforms:
-                program.set_uniform(name, kind, value)
+            _set_uniform(program, name, kind, value)
 
     def _initial(self, names: list[str]) -> dict[str, np.ndarray]:
         if names and self._spoken.translated:  # GLSL ES has no initialisers: what the source's own language makes of them
@@ -175,10 +172,7 @@ class Evaluation:
     def _bind_textures(self) -> None:
         for unit, (name, texture) in enumerate(self._textures.items(), FIRST_UNIT):
             texture.bind(unit)
-            uniform, _ = self.samplers[name]
-            for program in self._stage.programs():
-                if uniform in program.uniforms:
-                    program.set_uniform(uniform, gl_enums.GL_SAMPLER_2D, np.int32([unit]))
+            self._set_everywhere(self.samplers[name][0], gl_enums.GL_SAMPLER_2D, np.int32([unit]))
 
     def run(self, arrays: dict[str, np.ndarray], count: int) -> list[list[np.ndarray]]:
         """Evaluates the function ``count`` times.
@@ -238,6 +232,13 @@ class Evaluation:
                 "renderer stops them silently: it is endless, or needs a smaller bound",
                 *self._source.origin(line),
             )
+
+
+def _set_uniform(program: native.Program, name: str, kind: int, value: np.ndarray) -> None:
+    """Sets a uniform, or an array from its first element on, where the program reads it."""
+    name = name if name in program.uniforms else name + _FIRST
+    if name in program.uniforms:
+        program.set_uniform(name, kind, value)
 
 
 @cache

@@ -47,7 +47,8 @@ class Texture:
     ``wrap`` is "repeat", "clamp" (to the edge) or "mirror". ``filter`` is "nearest", "linear", or "mipmap" (linear between
     linear levels). A function is evaluated where there is no neighbouring pixel to tell how far apart samples lie, so
     texture() reads level 0; textureLod() and textureGrad() choose the level. llvmpipe weights texels in steps of 1/256.
-    ``srgb`` decodes uint8 colours from sRGB before they are filtered, as a texture of GL's format SRGB8_ALPHA8.
+    ``srgb`` decodes uint8 colours from sRGB (IEC 61966-2-1) before they are filtered, alpha not, as GL does with a texture
+    of the format SRGB8_ALPHA8; here exactly, where llvmpipe's own decoding is off by .001.
 
     One texture serves the whole batch of a call. CallError for what cannot be a texture.
     """
@@ -73,7 +74,7 @@ class Texture:
         if srgb:
             if self._format != gl_enums.GL_RGBA8:
                 raise CallError(f"only a texture of 8-bit numbers can be sRGB, this is of {texels.dtype}")
-            self._format = gl_enums.GL_SRGB8_ALPHA8
+            texels, self._format = _decoded(texels), gl_enums.GL_RGBA32F
         if self.sampler != "sampler2D" and filter != "nearest":
             raise CallError(f"a texture of {texels.dtype} cannot be filtered: give it filter='nearest'")
         self._texels, self._wrap, self._filters = texels, _WRAPS[wrap], _FILTERS[filter]
@@ -105,3 +106,10 @@ def _texels(image: np.ndarray) -> np.ndarray:
     rgba[..., 3] = _FORMATS[array.dtype.name][2]
     rgba[..., : array.shape[2]] = array[::-1]
     return rgba
+
+
+def _decoded(texels: np.ndarray) -> np.ndarray:
+    """8-bit texels as linear float32."""
+    code = np.arange(256) / 255
+    linear = np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
+    return np.concatenate([linear[texels[..., :3]], code[texels[..., 3:]]], axis=-1).astype(np.float32)

@@ -138,7 +138,6 @@ _BASES = {"f": gl_enums.GL_FLOAT, "i": gl_enums.GL_INT, "u": gl_enums.GL_UNSIGNE
 #: format of a texture -> numpy's type of its numbers
 _TEXELS = {
     gl_enums.GL_RGBA8: np.uint8,
-    gl_enums.GL_SRGB8_ALPHA8: np.uint8,
     gl_enums.GL_RGBA32F: np.float32,
     gl_enums.GL_RGBA32I: np.int32,
     gl_enums.GL_RGBA32UI: np.uint32,
@@ -347,7 +346,7 @@ class Mesh:
 class Texture:
     """A texture; ``texels`` (h, w, 4) with row 0 at v = 0, filters and wraps GL's.
 
-    ``texel_format`` is GL's: GL_RGBA8 and GL_SRGB8_ALPHA8 take uint8, GL_RGBA32F float32, GL_RGBA32I and GL_RGBA32UI
+    ``texel_format`` is GL's: GL_RGBA8 takes uint8, GL_RGBA32F float32, GL_RGBA32I and GL_RGBA32UI
     int32 and uint32.
     """
 

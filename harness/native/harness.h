@@ -153,8 +153,8 @@ size_t hn_mesh_index_count(const hn_mesh *mesh);
 
 /* ---- Textures (texture.c) ------------------------------------------------------------------------------ */
 
-/* A texture of RGBA texels in one of GL's formats, mipmaps made but for integers: GL_RGBA8 and
- * GL_SRGB8_ALPHA8 (from 4 bytes a texel), GL_RGBA32F, GL_RGBA32I and GL_RGBA32UI (from 16). */
+/* A texture of RGBA texels in one of GL's formats, mipmaps made but for integers: GL_RGBA8
+ * (from 4 bytes a texel), GL_RGBA32F, GL_RGBA32I and GL_RGBA32UI (from 16). */
 uint32_t hn_texture_create_as(uint32_t format, int width, int height, const void *texels, uint32_t min_filter,
                               uint32_t mag_filter, uint32_t wrap_s, uint32_t wrap_t);
 /* An 8-bit RGBA texture without colour conversion, mipmaps made; `wrap` and filters are GL's. */

@@ -20,7 +20,6 @@ int hn_image_check(const char *operation, int width, int height, size_t bytes_pe
 static size_t texel_bytes(uint32_t format, GLenum *layout, GLenum *type) {
     switch (format) {
     case GL_RGBA8:
-    case GL_SRGB8_ALPHA8:
         *layout = GL_RGBA;
         *type = GL_UNSIGNED_BYTE;
         return 4;
