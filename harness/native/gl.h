@@ -66,6 +66,7 @@
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
     X(PFNGLGETUNIFORMFVPROC, GetUniformfv)                       \
     X(PFNGLGETUNIFORMIVPROC, GetUniformiv)                       \
+    X(PFNGLGETUNIFORMUIVPROC, GetUniformuiv)                     \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
     X(PFNGLREADBUFFERPROC, ReadBuffer)                           \

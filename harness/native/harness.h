@@ -100,7 +100,7 @@ typedef struct {
 
 /* One output array, of which each element is the first `components` numbers of a vector. */
 typedef struct {
-    float *data; /* count * components floats, bit for bit as the shader made them */
+    float *data;         /* count * components floats, bit for bit as the shader made them */
     uint32_t components; /* 1 ... 4; of a compute stage any number */
 } hn_output;
 

@@ -234,6 +234,7 @@ int hn_program_uniform_read(uint32_t program, int32_t location, uint32_t type, i
         return hn_fail("%s: location %d, %d components", operation, location, components);
     GLfloat floats[MOST] = {0};
     GLint integers[MOST] = {0};
+    GLuint unsigneds[MOST] = {0};
     switch (type) {
     case GL_FLOAT:
     case GL_FLOAT_VEC2:
@@ -250,6 +251,13 @@ int hn_program_uniform_read(uint32_t program, int32_t location, uint32_t type, i
     case GL_FLOAT_MAT4x3:
         gl.GetUniformfv(program, location, floats);
         memcpy(data, floats, (size_t)components * sizeof *floats);
+        break;
+    case GL_UNSIGNED_INT:
+    case GL_UNSIGNED_INT_VEC2:
+    case GL_UNSIGNED_INT_VEC3:
+    case GL_UNSIGNED_INT_VEC4:
+        gl.GetUniformuiv(program, location, unsigneds);
+        memcpy(data, unsigneds, (size_t)components * sizeof *unsigneds);
         break;
     default:
         gl.GetUniformiv(program, location, integers);
