@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from . import precise, shader_text
+from . import loops, native, precise, shader_text
 from .errors import GlslError
 from .glsl import Source
 from .tokens import Text
@@ -88,15 +88,22 @@ def checked(source: Source, spoken: Dialect | None = None) -> Source:
     return replaced(source, _with_head(source.text, f"#version {version} es", head, _ES_EXTENSIONS))
 
 
-def complete(source: Source, rest: list[str], spoken: Dialect, *, compute: bool, head: str = "") -> str:
-    """The text of a stage: the source, in its dialect and mode, and what is put after it and (``head``) before it."""
+def complete(source: Source, rest: list[str], spoken: Dialect, *, compute: bool, counter: str = "") -> str:
+    """The text of a stage: the source, in its dialect and mode, and what is put after it.
+
+    With a ``counter``, which is put before it, its loops are counted.
+    """
     text = "\n".join([source.text.rstrip("\n"), *rest, ""])
     if spoken.mode in ("precise", "mediump"):
-        text = precise.make_precise(text)
+        tree = native.glsl_tree(native.Stage.FRAGMENT, checked(source, spoken).text) if precise.has_overloads(text) else ""
+        text = precise.make_precise(text, tree)
+    if counter:
+        text = loops.counted(text)
     if spoken.es:
-        head = f"{_PRECISION.format('mediump' if spoken.half else 'highp')} {shader_text.HALF if spoken.half else ''} {head}"
+        precisions = _PRECISION.format("mediump" if spoken.half else "highp")
+        head = f"{precisions} {shader_text.HALF if spoken.half else ''} {counter}"
         return _with_head(text, f"#version {spoken.version} es", head, _ES_EXTENSIONS)
     least = max(COMPUTE_VERSION if compute else VERSION, PRECISE_VERSION if spoken.mode == "precise" else VERSION)
     stated = text.partition("\n")[0].split()
     stated[1] = str(max(least, spoken.version))
-    return _with_head(text, " ".join(stated), head)
+    return _with_head(text, " ".join(stated), counter)

@@ -70,8 +70,6 @@ class Evaluation:
         self._textures: dict[str, Texture] = {}
         self._open(mode)
         self._counts = lanes() is not None and loops.most_passes(source.text, signature.name) >= loops.CAP
-        if self._counts:
-            source = dialect.replaced(source, loops.counted(source.text))
         self._packed = inputs.packed
         self._stage = self._compiled(Job(source, spoken, signature, inputs, self.outputs, self._counts))
         program = self._stage.program

@@ -33,7 +33,7 @@ class Job:
     signature: Signature
     inputs: Inputs
     outputs: Sequence[tuple[str, Sequence[Leaf]]]
-    counts_loops: bool  # the text tells of its loops by hn_pass
+    counts_loops: bool
 
     @property
     def leaves(self) -> list[Leaf]:
@@ -94,8 +94,8 @@ class ComputeStage:
             planes.append(["intBitsToFloat(hn_passes)"])
         main = shader_text.compute_body([start, *reads], calls, planes)
         rest = [*declarations, *job.declarations(), native.compute_head(), *main]
-        head = counter if job.counts_loops else ""
-        return native.Program.compute(dialect.complete(job.source, rest, job.spoken, compute=True, head=head))
+        counter = counter if job.counts_loops else ""
+        return native.Program.compute(dialect.complete(job.source, rest, job.spoken, compute=True, counter=counter))
 
     def limit(self) -> int:
         """The most elements that ``run`` takes at once."""
@@ -185,7 +185,7 @@ class FragmentStage:
                 [*declarations, *job.declarations(), *main],
                 job.spoken,
                 compute=False,
-                head=loops.COUNT_EACH if job.counts_loops else "",
+                counter=loops.COUNT_EACH if job.counts_loops else "",
             )
             self._programs.append(native.Program(vertex, text))
         self.program = self._programs[-1]

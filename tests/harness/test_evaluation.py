@@ -286,6 +286,38 @@ def test_groups_in_turns(functions, monkeypatch, limit):
     np.testing.assert_array_equal(made.f(v, 3), want)
 
 
+# ---- Uniforms with an initialiser ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("every_mode", ["as-written", "precise", "mediump"])
+@pytest.mark.parametrize(
+    ("declared", "read", "initial", "other"),
+    [
+        ("float u = 0.5;", "u", 0.5, 3),
+        ("float a = 9.0, u = 1.0 + 0.5, b;", "u", 1.5, 3),
+        ("vec2 u = vec2(1.0, 2.0);", "u.y", 2, [3, 4]),
+        ("mat2x3 u = mat2x3(1, 2, 3, 4, 5, 6);", "u[1].z", 6, [[1, 2], [3, 4], [5, 60]]),
+        ("int u = -7;", "float(u)", -7, 3),
+        ("uint u = 4000000000u;", "float(u >> 24)", 4000000000 >> 24, 3),
+        ("bool u = true;", "(u ? 1.0 : 2.0)", 1, False),
+        ("float u[3] = float[](1.0, 2.0, 4.0);", "(u[0] + u[1] * u[2])", 9, [1, 1, 1]),
+        ("ivec2 u[2] = ivec2[2](ivec2(1, 2), ivec2(3, 4));", "float(u[0].y + u[1].x)", 5, [[5, 6], [7, 8]]),
+    ],
+)
+def test_a_uniform_with_an_initialiser_need_not_be_given(functions, every_mode, declared, read, initial, other):
+    """It has its initial value again in every call that does not give it."""
+    made = functions(f"uniform {declared}\nuniform float gain;\nfloat f(float x) {{ return x + {read} * gain; }}", mode=every_mode)
+    assert made.f(1, gain=1) == 1 + initial
+    assert made.f(1, gain=1, u=other) != 1 + initial
+    assert made.f(1, gain=1) == 1 + initial
+    np.testing.assert_array_equal(made.f(np.ones(40_000), gain=1), 1 + initial)
+
+
+def test_one_without_has_to_be_given_still(functions):
+    with pytest.raises(CallError, match="reads the uniform float v"):
+        functions("uniform float u = 1.0, v;\nfloat f(float x) { return x + u + v; }").f(1)
+
+
 # ---- Nothing folds ---------------------------------------------------------------------------------------------------
 
 

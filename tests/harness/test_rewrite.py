@@ -213,3 +213,44 @@ def test_what_computes_nothing_is_not_declared_precise(declaration):
 )
 def test_what_holds_numbers_is_declared_precise(declaration, expected):
     assert words(expected) == words(precise.make_precise(declaration))[3 + 1 :]  # after: uniform float hn_zero ;
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("float f() { float x; return x; }", False),
+        ("const float x = 1.0; uniform vec2 y; uniform float z = 1.0; precision highp float;", False),
+        ("struct S { float x; }; uniform struct T { float y; } t;", False),
+        ("float f(float x); vec2 g(in vec2, S s);", False),
+        ("layout(std140) uniform B { float x; } b;", False),
+        ("#define x float y;", False),
+        ("float x;", True),
+        ("float f(); float x = 1.0;", True),
+        ("struct S { float x; } s;", True),
+        ("struct S { float x; }; S s[2];", True),
+        ("vec2 x = vec2(1.0);", True),
+        ("shared float x;", True),
+    ],
+)
+def test_variables_that_can_change_are_found(text, found):
+    assert rewrite.has_variables(f"#version 330\n{text}\n") is found
+
+
+@pytest.mark.parametrize(
+    ("text", "without", "names"),
+    [
+        ("uniform float x = 1.0;", "uniform float x ;", ["x"]),
+        ("uniform float x, y = 1.0, z;", "uniform float x, y , z;", ["y"]),
+        ("uniform vec2 x = vec2(1.0, 2.0), y = x;", "uniform vec2 x , y ;", ["x", "y"]),
+        ("uniform float x[2] = float[2](1.0, 2.0);", "uniform float x[2] ;", ["x"]),
+        ("uniform float[2] x = float[](1.0, 2.0);", "uniform float[2] x ;", ["x"]),
+        ("uniform float x\n = 1.0\n;", "uniform float x\n\n;", ["x"]),
+        ("uniform B { float x; }; float y = 1.0;", "uniform B { float x; }; float y = 1.0;", []),
+        ("float f() { float x = 1.0; return x; }", "float f() { float x = 1.0; return x; }", []),
+    ],
+)
+def test_initialisers_of_uniforms_are_taken_out(text, without, names):
+    got, found = rewrite.uniform_initialisers(text)
+    assert words(got) == words(without)
+    assert found == names
+    assert got.count("\n") == text.count("\n")
