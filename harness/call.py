@@ -30,8 +30,8 @@ def shader(
     """The functions of a GLSL file, callable by name.
 
     ``defines`` are macros, ``include_dirs`` the folders where includes are looked for, before the file's own. ``mode``
-    is one of ``MODES``: "as-written", "precise" (the driver may not rewrite the arithmetic), or "mediump" (half precision,
-    not rewritten either). GlslError when it does not compile.
+    is one of ``MODES``: "as-written", "precise" (the driver may not rewrite the arithmetic), or "mediump" (not
+    rewritten either, in half precision). GlslError when it does not compile.
     """
     path = Path(path)
     macros = {name: str(text) for name, text in (defines or {}).items()}
@@ -150,7 +150,9 @@ class Function:
                 evaluation.reset_uniform(name)
                 continue
             if kind in SAMPLERS:
-                raise CallError(f"{self.__name__} reads the uniform {kind} {name}: give it a Texture by its name", *where)
+                raise CallError(
+                    f"{self.__name__} reads the uniform {kind} {name}: give it a Texture by its name", *where
+                )
             if kind not in _UNIFORM_TYPES:
                 raise CallError(f"{self.__name__} reads the uniform {kind} {name}, which cannot be given", *where)
             if uniform.location < 0:

@@ -1,10 +1,10 @@
-"""Which GLSL a source is compiled as: its own version, raised where a stage needs it, or in mode mediump GLSL ES 3.10."""
+"""Which GLSL a source is compiled as: its own, raised where a stage needs it, or in mode mediump GLSL ES 3.10."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from . import loops, native, precise, shader_text
+from . import callees, loops, native, precise, shader_text
 from .errors import GlslError
 from .glsl import Source
 from .tokens import Text
@@ -27,7 +27,10 @@ _ES_EXTENSIONS = (
     "GL_EXT_shader_non_constant_global_initializers",
 )
 #: what a source that states nothing else gets; an int is 32 bits wide also in half precision, as hashes need it
-_PRECISION = "precision {0} float; precision highp int; precision {0} sampler2D; precision highp isampler2D; precision highp usampler2D;"
+_PRECISION = (
+    "precision {0} float; precision highp int; "
+    "precision {0} sampler2D; precision highp isampler2D; precision highp usampler2D;"
+)
 
 
 @dataclass(frozen=True)
@@ -95,7 +98,9 @@ def complete(source: Source, rest: list[str], spoken: Dialect, *, compute: bool,
     """
     text = "\n".join([source.text.rstrip("\n"), *rest, ""])
     if spoken.mode in ("precise", "mediump"):
-        tree = native.glsl_tree(native.Stage.FRAGMENT, checked(source, spoken).text) if precise.has_overloads(text) else ""
+        tree = (
+            native.glsl_tree(native.Stage.FRAGMENT, checked(source, spoken).text) if callees.has_overloads(text) else ""
+        )
         text = precise.make_precise(text, tree)
     if counter:
         text = loops.counted(text)

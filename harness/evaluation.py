@@ -25,7 +25,7 @@ BUFFERS_MAX = 16  # arrays with a buffer of their own; GL promises 16 units a st
 FIRST_UNIT = BUFFERS_MAX
 #: elements that are evaluated at once where their numbers are copied together first
 PACKED_STEP = 1 << 16
-#: the same where loops are counted: few at first, for the loops may be endless, and more while that takes less than this
+#: the same where loops are counted: few at first, for they may be endless; more while that takes less than this
 COUNTED_STEPS = 1 << 10, 1 << 18
 COUNTED_SECONDS = 0.05
 
@@ -94,7 +94,9 @@ class Evaluation:
         """The function's signature in the dialect that the mode compiles, which has precisions."""
         try:
             found = signatures(
-                dialect.checked(source, self._spoken), rewrite.struct_names(source.text), rewrite.result_names(source.text)
+                dialect.checked(source, self._spoken),
+                rewrite.struct_names(source.text),
+                rewrite.result_names(source.text),
             )
         except GlslError as error:
             raise self._refused(error) from None
@@ -158,7 +160,9 @@ class Evaluation:
             _set_uniform(program, name, kind, value)
 
     def _initial(self, names: list[str]) -> dict[str, np.ndarray]:
-        if names and self._spoken.translated:  # GLSL ES has no initialisers: what the source's own language makes of them
+        if (
+            names and self._spoken.translated
+        ):  # GLSL ES has no initialisers: what the source's own language makes of them
             known = Evaluation(self._source, self.signature, "as-written").initial
             return {name: known[name] for name in names if name in known}
         program = self._stage.program
@@ -219,15 +223,15 @@ class Evaluation:
             return
         if isinstance(self._stage, FragmentStage):
             raise CallError(
-                f"a loop of {self.signature} ran more than {loops.SURE} passes for one element, and what is evaluated in a "
-                f"fragment stage cannot be told from where the software renderer stops loops silently ({loops.CAP})",
+                f"the loops of {self.signature} ran more than {loops.SURE} passes for one element; in a fragment "
+                "stage, which it needs, the software renderer may have stopped them silently",
                 *self.signature.origin,
             )
         line = self._stage.line_where_stopped(arrays, [*planes, passes], count)
         if line:
             raise CallError(
-                f"the loops of {self.signature} ran {loops.CAP} passes for one element, this one the last, where the software "
-                "renderer stops them silently: it is endless, or needs a smaller bound",
+                f"the loops of {self.signature} ran {loops.CAP} passes for one element, this one the last, where the "
+                "software renderer stops them silently: it is endless, or needs a smaller bound",
                 *self._source.origin(line),
             )
 
@@ -241,13 +245,13 @@ def _set_uniform(program: native.Program, name: str, kind: int, value: np.ndarra
 
 @cache
 def _computes_in_half() -> bool:
-    """Whether the driver's mediump is half precision: 1 + 2^-11 - 1 is 0 there. A processor without its conversions may not."""
+    """Whether the driver's mediump is half precision: (1 + 2^-11) - 1 is 0 there. Not every processor has it."""
     source = Source("", "#version 330\n", (("", 1),))
     rest = [
         native.compute_head(),
         "uniform highp samplerBuffer hn_x; uniform highp int hn_count;",
         "layout(std430, binding = 0) writeonly buffer hn_Out { highp float hn_out[]; };",
-        "void main() { vec2 x = texelFetch(hn_x, 0).xy; float sum = x.x + x.y; float left = sum - x.x; hn_out[0] = left; }",
+        "void main() { vec2 x = texelFetch(hn_x, 0).xy; float sum = x.x + x.y, left = sum - x.x; hn_out[0] = left; }",
     ]
     spoken = dialect.dialect(source, "mediump")
     if not native.compute_available():

@@ -1,11 +1,12 @@
 """Loops that the software renderer might stop: how long they can be, and counters that tell.
 
-llvmpipe stops loops after 65 535 passes without a word. It counts for each group of elements that it evaluates
-together (8, with 256-bit vectors), over all loops that one of them is in, every pass and the last look at the condition too.
-So where a bound cannot be seen in the text, the passes are counted while it runs:
+llvmpipe stops loops after 65 535 passes without a word. It counts for each group of elements that it evaluates together
+(8, with 256-bit vectors), over all loops that one of them is in, the last look at each condition as a pass too. So
+where a bound cannot be seen in the text, the passes are counted while it runs:
 
 - first for each element by itself (``hn_passes``): if all stay below ``SURE``, no group can have reached the cap;
-- else for each group, as the driver does, in memory that its elements share (``hn_group``): slow, but exact.
+- else for each group, as the driver does, in memory that its elements share (``hn_group``): slow, but exact;
+- where a group reached the cap, with each element alone in a group, to know which elements are at fault.
 """
 
 from __future__ import annotations
@@ -16,8 +17,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .rewrite import PRECISION
-from .tokens import Statement, Text
+from .tokens import PRECISION, Statement, Text
 
 CAP = 65535
 LANES_MAX = 16  # elements of a group: vectors of 512 bits
@@ -182,10 +182,20 @@ def most_passes(text: str, name: str) -> float:
             functions.setdefault(code[code.function_name(s)], []).append(s)
     constants = _constants(code, [s for s in statements if s.body is None])
     changing = {
-        f for f, found in functions.items() for s in found for k in code.solid(s.first, s.body) if code[k] in ("out", "inout")
+        f
+        for f, found in functions.items()
+        for s in found
+        for k in code.solid(s.first, s.body)
+        if code[k] in ("out", "inout")
     }
     # a name that is declared again within a function may be another there
-    declared = [code[code.next(k)] for s in statements if s.body for k in code.solid(s.first, s.last) if code[k] in ("int", "uint", "float")]
+    declared = [
+        code[code.next(k)]
+        for s in statements
+        if s.body
+        for k in code.solid(s.first, s.last)
+        if code[k] in ("int", "uint", "float")
+    ]
     constants = {n: value for n, value in constants.items() if n not in declared}
     known: dict[str, float] = {}
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from itertools import takewhile
 
-from .tokens import CLOSING, Text
+from .tokens import CLOSING, PRECISION, Text
 
-PRECISION = {"highp", "mediump", "lowp"}
 _INTERFACE = {"in", "out", "flat", "smooth", "noperspective", "centroid", "sample", "invariant", "precise"}
 
 
@@ -92,7 +91,9 @@ def uniform_initialisers(text: str) -> tuple[str, list[str]]:
         if statement.body is not None:
             continue
         solid = list(code.solid(statement.first, statement.last))
-        if "uniform" not in (code[k] for k in solid) or "{" in (code[k] for k in takewhile(lambda k: code[k] != "=", solid)):
+        if "uniform" not in (code[k] for k in solid) or "{" in (
+            code[k] for k in takewhile(lambda k: code[k] != "=", solid)
+        ):
             continue
         name, k = None, solid[0]
         while k is not None and k < statement.last:

@@ -19,7 +19,12 @@ WIDE = 4  # elements that an invocation evaluates where it pays: their numbers f
 _SAMPLERS = {"float": "samplerBuffer", "int": "isamplerBuffer", "uint": "usamplerBuffer", "bool": "usamplerBuffer"}
 _VECTORS = {"float": "vec4", "int": "ivec4", "uint": "uvec4", "bool": "uvec4"}
 _FROM_BITS = {"float": "uintBitsToFloat({})", "int": "int({})", "uint": "{}", "bool": "{}"}
-_TO_BITS = {"float": "{}", "int": "intBitsToFloat({})", "uint": "uintBitsToFloat({})", "bool": "uintBitsToFloat(uint({}))"}
+_TO_BITS = {
+    "float": "{}",
+    "int": "intBitsToFloat({})",
+    "uint": "uintBitsToFloat({})",
+    "bool": "uintBitsToFloat(uint({}))",
+}
 
 #: declared before the library's text in mode mediump: a number as the nearest half precision has it, ties to even
 HALF = "highp float hn_half(highp float hn_x) { return unpackHalf2x16(packHalf2x16(vec2(hn_x, 0.0))).x; }"
@@ -142,7 +147,8 @@ def call(
 def compute_body(reads: Sequence[str], calls: Sequence[Sequence[str]], planes: Sequence[Sequence[str]]) -> list[str]:
     """The body of a compute stage's main(), and before it the blocks that ``planes`` of numbers are written to.
 
-    A plane's numbers are those of all elements of an invocation; they are written as whole vectors where they fill some.
+    A plane's numbers are those of all elements of an invocation; they are written as whole vectors where they fill
+    some.
     """
     blocks, writes = [], []
     for k, numbers in enumerate(planes):

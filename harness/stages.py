@@ -10,7 +10,6 @@ import numpy as np
 
 from . import dialect, loops, native, rewrite, shader_text
 from .dialect import Dialect
-from .errors import NativeError
 from .glsl import Source
 from .leaf import Leaf
 from .shader_text import WIDE, Inputs
@@ -42,9 +41,7 @@ class Job:
 
     def call(self, element: int = 0, *, wide: bool = False) -> tuple[list[str], list[list[str]]]:
         """The statements of one call, and the numbers of each of its leaves."""
-        return shader_text.call(
-            self.signature, self.inputs, self.outputs, element, wide=wide, half=self.spoken.half
-        )
+        return shader_text.call(self.signature, self.inputs, self.outputs, element, wide=wide, half=self.spoken.half)
 
     def declarations(self) -> list[str]:
         """The samplers among the parameters."""
@@ -117,7 +114,8 @@ class ComputeStage:
                 self._prepare(self._wide)
             done = count // WIDE * WIDE
             groups = {
-                buffer: (np.tile(a, (WIDE, 1)) if len(a) == 1 else a[:done]).reshape(-1, 4) for buffer, a in arrays.items()
+                buffer: (np.tile(a, (WIDE, 1)) if len(a) == 1 else a[:done]).reshape(-1, 4)
+                for buffer, a in arrays.items()
             }
             self._wide.evaluate(groups, [plane[:done] for plane in planes], done, WIDE)
         if done < count:

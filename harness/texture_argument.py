@@ -37,18 +37,18 @@ SAMPLERS = ("sampler2D", "isampler2D", "usampler2D")
 class Texture:
     """A two-dimensional texture to give to a function's sampler2D, or to a uniform of that type.
 
-    ``image`` is the path of a picture (8 bits a channel; read as the renderer reads its textures), or an array
-    (h, w) or (h, w, 1 ... 4) of uint8 (0 ... 255 become 0 ... 1), float32, or for an isampler2D or usampler2D int32 or uint32;
-    float64 and float16 become float32. Channels that it lacks are 0, alpha is 1.
+    ``image`` is the path of a picture (8 bits a channel; read as the renderer reads its textures), or an array (h, w)
+    or (h, w, 1 ... 4): uint8 (0 ... 255 become 0 ... 1) or float32 (which float64 and float16 become), for an
+    isampler2D int32, for a usampler2D uint32. Channels that it lacks are 0, alpha is 1.
 
-    Row 0 is the top of the picture, as numpy and Pillow have it, and v = 1: the texture coordinate (0, 0) is the lower left
-    corner of the picture, the middle of pixel [row, column] is ((column + 1/2) / w, 1 - (row + 1/2) / h).
+    Row 0 is the top of the picture, as numpy and Pillow have it, and v = 1: the texture coordinate (0, 0) is the lower
+    left corner of the picture, the middle of pixel [row, column] is ((column + 1/2) / w, 1 - (row + 1/2) / h).
 
-    ``wrap`` is "repeat", "clamp" (to the edge) or "mirror". ``filter`` is "nearest", "linear", or "mipmap" (linear between
-    linear levels). A function is evaluated where there is no neighbouring pixel to tell how far apart samples lie, so
-    texture() reads level 0; textureLod() and textureGrad() choose the level. llvmpipe weights texels in steps of 1/256.
-    ``srgb`` decodes uint8 colours from sRGB (IEC 61966-2-1) before they are filtered, alpha not, as GL does with a texture
-    of the format SRGB8_ALPHA8; here exactly, where llvmpipe's own decoding is off by .001.
+    ``wrap`` is "repeat", "clamp" (to the edge) or "mirror". ``filter`` is "nearest", "linear", or "mipmap" (linear
+    between linear levels). A function is evaluated where there is no neighbouring pixel to tell how far apart samples
+    lie, so texture() reads level 0; textureLod() and textureGrad() choose the level. llvmpipe weights texels in steps
+    of 1/256. ``srgb`` decodes uint8 colours from sRGB (IEC 61966-2-1) before they are filtered, alpha not, as GL does
+    with a texture of the format SRGB8_ALPHA8; here exactly, where llvmpipe's own decoding is off by .001.
 
     One texture serves the whole batch of a call. CallError for what cannot be a texture.
     """

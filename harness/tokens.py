@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 _TOKEN = re.compile(
@@ -12,6 +12,10 @@ _TOKEN = re.compile(
     r"|(?P<mark><<=|>>=|<<|>>|&&|\|\||\^\^|\+\+|--|[-+*/%&|^<>=!]=|.)",
     re.MULTILINE,
 )
+_BUILT_IN_TYPE = re.compile(r"(float|double|u?int|bool|[dbiu]?vec[234]|d?mat[234](x[234])?)$")
+PRECISION = {"highp", "mediump", "lowp"}
+BEFORE_TYPE = {"const", "in", "out", "inout", "precise", *PRECISION}
+ASSIGNMENT = {"=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="}
 CLOSING = {"(": ")", "{": "}", "[": "]"}
 
 
@@ -115,3 +119,17 @@ class Text:
         """Where the name of a function stands."""
         named = (k for k in self.solid(function.first, function.body) if self[self.next(k)] == "(")
         return next(named, function.first)
+
+    def at_run_time(self, function: Statement) -> Iterator[int]:
+        """The solid tokens of a function's body, without what has to be constant: after ``const`` and ``case``."""
+        skipped = -1
+        for k in self.solid(function.body, function.last):
+            if self[k] in ("const", "case"):
+                skipped = next(j for j in self.solid(k) if self[j] == (";" if self[k] == "const" else ":"))
+            if k > skipped:
+                yield k
+
+
+def is_type(word: str, structs: Collection[str]) -> bool:
+    """Whether a word names a numeric type, or one of the structures."""
+    return bool(_BUILT_IN_TYPE.match(word)) or word in structs

@@ -293,7 +293,9 @@ class Program:
             _done(_library.hn_program_uniform_read(self._name, where, variable.type, size, _address(value)))
         return values
 
-    def evaluate(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[np.ndarray], count: int, each: int = 1) -> None:
+    def evaluate(
+        self, inputs: Mapping[str, np.ndarray], outputs: Sequence[np.ndarray], count: int, each: int = 1
+    ) -> None:
         """Runs the fragment or compute stage for ``count`` elements; an invocation of a compute stage does ``each``.
 
         ``inputs`` maps the name of a buffer sampler to a C-contiguous array (texels, components) of float32, int32 or

@@ -65,7 +65,9 @@ def test_every_operation_rounds_to_half(half, written):
 
 def test_numbers_are_rounded_to_half_on_the_way_in(half):
     """To nearest, ties to even: 65519 is below the middle of the largest half and what would follow it, 65520 is it."""
-    x = np.float32([1 + 2**-11, 1 + 3 * 2**-11, 0.1, 65519, 65520, 70000, -1e30, 2**-24, 2**-25, 1.01 * 2**-25, 1e-40, np.inf])
+    x = np.float32(
+        [1 + 2**-11, 1 + 3 * 2**-11, 0.1, 65519, 65520, 70000, -1e30, 2**-24, 2**-25, 1.01 * 2**-25, 1e-40, np.inf]
+    )
     x = np.concatenate([x, np.random.default_rng(2).standard_normal(20_000).astype(np.float32)])
     with np.errstate(over="ignore"):
         assert same(half("float f(float x) { return x; }").f(x), x.astype(HALF))
@@ -86,7 +88,8 @@ def test_numbers_are_rounded_to_half_on_the_way_in(half):
         ("void f(float a, out float b, inout float c) { b = a + 1.0; c = c + b; }", (2048, 1), (2048, 2048)),
         ("float f(float a[2]) { float s[2]; s[1] = a[0] + a[1]; return s[1]; }", ([2048, 1],), 2048),
         ("vec2 f(mat2 m, vec2 v) { return m * v; }", ([[1, 2**-11], [0, 2]], [1, 1]), [1, 2]),
-        ("struct S { float x; vec2 y; }; S f(S s) { s.x += s.y.y; return s; }", ({"x": 2048, "y": [0.1, 1]},), (2048, [HALF(0.1), 1])),
+        ("struct S { float x; vec2 y; }; S f(S s) { s.x += s.y.y; return s; }", ({"x": 2048, "y": [0.1, 1]},),
+         (2048, [HALF(0.1), 1])),
         ("float s = 0.0; float f(float a, float b) { s = a + b; return s - b; }", (2048, 1), 2047),
         ("float f(float a) { return a; } vec2 f(vec2 a, float b) { return a + b; }", ([2048, 0], 1), [2048, 1]),
         ("const float k = 2048.0; float f(float a) { return k + a; }", (1,), 2048),
@@ -115,7 +118,8 @@ def test_a_uniform_is_rounded_too(half):
         ("struct S { highp float x; }; S f(highp float a, highp float b) { return S(a + b); }", 1 + 2**-11),
         ("void f(highp float a, highp float b, out highp float c) { c = a + b; }", 1 + 2**-11),
         ("float f(highp float a, float b) { return a + b; }", 1),
-        ("highp vec2[2] f(highp float a, highp float b) { return vec2[2](vec2(a), vec2(a + b)); }", [[1, 1], [1 + 2**-11] * 2]),
+        ("highp vec2[2] f(highp float a, highp float b) { return vec2[2](vec2(a), vec2(a + b)); }",
+         [[1, 1], [1 + 2**-11] * 2]),
     ],
 )  # fmt: skip
 def test_what_is_declared_highp_keeps_single_precision(half, text, want):
@@ -124,7 +128,9 @@ def test_what_is_declared_highp_keeps_single_precision(half, text, want):
 
 
 def test_integers_stay_32_bits_wide(half):
-    made = half("uint f(uint x) { x ^= x >> 16; x *= 0x45d9f3bu; return x ^ (x >> 16); } int g(int x) { return x * 3; }")
+    made = half(
+        "uint f(uint x) { x ^= x >> 16; x *= 0x45d9f3bu; return x ^ (x >> 16); } int g(int x) { return x * 3; }"
+    )
     x = np.uint32([1, 12345, 2**31, 2**32 - 1])
     y = (x ^ (x >> np.uint32(16))) * np.uint32(0x45D9F3B)
     np.testing.assert_array_equal(made.f(x), y ^ (y >> np.uint32(16)))
@@ -162,7 +168,9 @@ def test_what_is_not_glsl_es_is_refused_in_its_line(half, text, line):
         made.f(1)
     assert caught.value.line == line
     assert caught.value.file.endswith("test.glsl")
-    assert caught.value.message.startswith("in mode mediump the source is compiled as GLSL ES 3.10, which does not take")
+    assert caught.value.message.startswith(
+        "in mode mediump the source is compiled as GLSL ES 3.10, which does not take"
+    )
 
 
 def test_it_says_so_in_an_included_file_too(tmp_path, functions, half):

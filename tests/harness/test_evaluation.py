@@ -7,7 +7,6 @@ import pytest
 
 from harness import CallError, GlslError, native, shader, stages
 
-
 # ---- Names -----------------------------------------------------------------------------------------------------------
 
 
@@ -88,7 +87,9 @@ def test_many_outputs_of_all_kinds(functions):
 def test_any_number_of_inputs_goes_in(functions, mode, count):
     """A stage has 16 texture units at least; those of one element are then packed together."""
     parameters = ", ".join(f"float a{n}" for n in range(count))
-    made = functions(f"vec2 f({parameters}) {{ return vec2({' - '.join(f'a{n}' for n in range(count))}, a3); }}", mode=mode)
+    made = functions(
+        f"vec2 f({parameters}) {{ return vec2({' - '.join(f'a{n}' for n in range(count))}, a3); }}", mode=mode
+    )
     arguments = [np.float32([n, 2 * n]) if n % 3 else np.float32(n) for n in range(count)]
     want = arguments[0] - sum(arguments[1:])
     np.testing.assert_array_equal(made.f(*arguments), np.stack([want, [3, 3]], axis=1))
@@ -132,7 +133,9 @@ def test_every_version_from_330_on_will_do(functions, mode, version):
 @pytest.mark.parametrize("version", ["300 es", "310 es", "320 es"])
 def test_versions_of_glsl_es_will_do(functions, mode, version):
     """Also one that states no precision, which a fragment stage of GLSL ES would have to."""
-    made = functions(f"#version {version}\nstruct S {{ float x; }}; float f(S s, vec2 v) {{ return s.x + v.y; }}", mode=mode)
+    made = functions(
+        f"#version {version}\nstruct S {{ float x; }}; float f(S s, vec2 v) {{ return s.x + v.y; }}", mode=mode
+    )
     assert made.f({"x": 2**-20}, [5, 1]) == 1 + 2**-20
 
 
@@ -238,8 +241,9 @@ MANY = stages.COUNT_OF_WIDE
 @pytest.mark.parametrize("count", [MANY, MANY + 1, MANY + 2, MANY + 3])
 def test_many_elements_are_evaluated_in_groups_and_a_rest(functions, mode, programs, count):
     """Every type, single values too; and what lies behind the results is not touched."""
-    text = """void f(float a, vec2 b, vec3 c, mat2 m, ivec3 i, bool k, float s, vec3 t, out vec3 x, out float y, out ivec2 z,
-                out bool w) {
+    text = """
+    void f(float a, vec2 b, vec3 c, mat2 m, ivec3 i, bool k, float s, vec3 t,
+           out vec3 x, out float y, out ivec2 z, out bool w) {
         x = c * s + t; y = a + b.y + m[1][0] + m[0][1] * 10.0; z = i.zx; w = !k; }"""
     random = np.random.default_rng(count)
     a, b, c = (random.integers(0, 100, shape).astype(np.float32) for shape in (count, (count, 2), (count, 3)))
@@ -306,7 +310,9 @@ def test_groups_in_turns(functions, monkeypatch, limit):
 )
 def test_a_uniform_with_an_initialiser_need_not_be_given(functions, every_mode, declared, read, initial, other):
     """It has its initial value again in every call that does not give it."""
-    made = functions(f"uniform {declared}\nuniform float gain;\nfloat f(float x) {{ return x + {read} * gain; }}", mode=every_mode)
+    made = functions(
+        f"uniform {declared}\nuniform float gain;\nfloat f(float x) {{ return x + {read} * gain; }}", mode=every_mode
+    )
     assert made.f(1, gain=1) == 1 + initial
     assert made.f(1, gain=1, u=other) != 1 + initial
     assert made.f(1, gain=1) == 1 + initial

@@ -10,6 +10,7 @@ from harness.signature import Array, Numeric, Opaque, Struct
 
 FLOAT, VEC3 = Numeric("float"), Numeric("float", 3)
 
+
 def test_the_leaves_of_a_type_are_its_numbers_from_first_to_last():
     light = Struct((("direction", VEC3), ("on", Numeric("bool"))), "Light")
     scene = Struct((("lights", Array(light, 2)), ("m", Numeric("float", 3, 2)), ("w", Array(FLOAT, 2))), "Scene")

@@ -151,8 +151,8 @@ def test_loops_of_an_included_file_are_named_there(functions, tmp_path):
 def test_the_passes_of_all_loops_add_up(functions):
     """The driver counts over all loops of an evaluation."""
     made = functions(
-        "float f(int n) { float s = 0.0;\n for (int i = 0; i < n; ++i) s += 1.0;\n for (int i = 0; i < n; ++i) s += 1.0;"
-        "\n return s; }"
+        "float f(int n) { float s = 0.0;\n for (int i = 0; i < n; ++i) s += 1.0;\n"
+        "for (int i = 0; i < n; ++i) s += 1.0; return s; }"
     )
     assert made.f(30_000) == 60_000
     with pytest.raises(CallError) as caught:
@@ -171,7 +171,9 @@ def test_elements_that_part_ways_do_not_stop_each_other(functions):
 
 
 def test_a_loop_that_is_evaluated_in_a_fragment_stage_is_refused_early(functions, monkeypatch):
-    made = functions("float f(int n) { float s = 0.0; for (int i = 0; i < n; ++i) s += 1.0; return s + dFdx(s) * 0.0; }")
+    made = functions(
+        "float f(int n) { float s = 0.0; for (int i = 0; i < n; ++i) s += 1.0; return s + dFdx(s) * 0.0; }"
+    )
     np.testing.assert_array_equal(made.f([1000, 1000]), [1000, 1000])
     for n in (5_000, 10**6):
         with pytest.raises(CallError, match="ran more than 4094 passes for one element"):
@@ -181,7 +183,9 @@ def test_a_loop_that_is_evaluated_in_a_fragment_stage_is_refused_early(functions
 def test_counting_changes_no_bits(functions):
     """A loop of the same passes, once with a bound that the text shows; as written the driver may merge its passes."""
     body = "float s = x; for (int i = 0; i < {0}; ++i) {{ s = s * 1.7 + sin(s) * x; s = s - floor(s); }} return s;"
-    made = functions(f"float f(float x) {{ {body.format(20)} }} float g(float x, int n) {{ {body.format('n')} }}", mode="precise")
+    made = functions(
+        f"float f(float x) {{ {body.format(20)} }} float g(float x, int n) {{ {body.format('n')} }}", mode="precise"
+    )
     x = np.linspace(0, 3, 1000, dtype=np.float32)
     np.testing.assert_array_equal(made.f(x), made.g(x, 20))
 
