@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from functools import cache
 
@@ -40,7 +41,6 @@ class Evaluation:
         self.signature = signature
         spoken = dialect.dialect(source, mode)
         self._source, self._spoken = source, spoken
-        initialised: list[str] = []
         text, initialised = rewrite.uniform_initialisers(source.text)
         if spoken.translated:
             source = dialect.replaced(source, text)
@@ -80,7 +80,7 @@ class Evaluation:
             if kind in SAMPLERS:
                 self.samplers[name] = name, kind
         #: uniforms that need not be given -> the value that the source gives them, in GL's order
-        self.initial = self._initial([name for name in initialised if name in self.uniforms])
+        self.initial = self._initial([name for name in self.uniforms if re.match(r"\w+", name)[0] in initialised])
 
     def _open(self, mode: str) -> None:
         native.open_context()

@@ -5,6 +5,8 @@ Expected values come from numpy's float16, which rounds each operation once, to 
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -23,6 +25,15 @@ def half(functions):
     if not evaluation._computes_in_half():
         pytest.skip("this driver computes mediump in single precision")
     return lambda text: functions(text, mode="mediump")
+
+
+def test_llvmpipe_has_half_precision_where_the_processor_has():
+    """What the other tests are skipped without."""
+    native.open_context()
+    flags = Path("/proc/cpuinfo")
+    if "llvmpipe" not in native.context_info()["renderer"] or not (flags.is_file() and " f16c" in flags.read_text()):
+        pytest.skip("another driver, or a processor without f16c")
+    assert evaluation._computes_in_half()
 
 
 def same(got, want) -> bool:
@@ -74,6 +85,16 @@ def test_numbers_are_rounded_to_half_on_the_way_in(half):
         assert same(half("float f(float x) { return x * 3.0; }").f(x), x.astype(HALF) * HALF(3))
 
 
+@pytest.mark.parametrize("written", ["a + b", "a - b", "a * b", "a / b", "sqrt(a)"])
+def test_an_operation_is_one_on_the_rounded_numbers(half, written):
+    """The driver would compute a single operation in single precision from what comes in."""
+    a, b = np.random.default_rng(3).uniform(0.1, 10, (2, 20_000)).astype(np.float32)
+    got = half(f"float f(float a, float b) {{ return {written}; }}").f(a, b)
+    want = OPERATIONS[written](a.astype(HALF), b.astype(HALF))
+    assert not np.array_equal(want, OPERATIONS[written](a, b).astype(HALF))
+    assert same(got, want)
+
+
 @pytest.mark.parametrize(
     ("text", "arguments", "want"),
     [
@@ -83,6 +104,9 @@ def test_numbers_are_rounded_to_half_on_the_way_in(half):
         ("float f(float a) { return a * 0.5; }", (2**-24,), 0),
         ("float g(float a) { return a * a; } float f(float a) { return g(a) - 65504.0; }", (255.9,), -32),
         ("bool f(float a, float b) { return a + b == a; }", (1, 2**-11), True),
+        ("bool f(float a, float b) { return a == b; }", (1, 1 + 2**-12), True),
+        ("float f(float a, float b) { return a < b ? 1.0 : 2.0; }", (1, 1 + 2**-12), 2),
+        ("uint f(float a) { return floatBitsToUint(a); }", (1 + 2**-12,), 0x3F800000),
         ("int f(float a) { return int(a + 1.0); }", (2048,), 2048),
         ("float f(int i) { float x = float(i); return x + 1.0; }", (2048,), 2048),
         ("void f(float a, out float b, inout float c) { b = a + 1.0; c = c + b; }", (2048, 1), (2048, 2048)),
@@ -125,6 +149,12 @@ def test_a_uniform_is_rounded_too(half):
 def test_what_is_declared_highp_keeps_single_precision(half, text, want):
     got = half(text).f(1, 2**-11)
     np.testing.assert_array_equal(got[0] if isinstance(got, tuple) else got, np.float32(want))
+
+
+def test_an_argument_that_is_declared_highp_comes_in_as_it_is(half):
+    x = np.float32(1 + 2**-20)
+    assert half("highp float f(highp float a) { return a; }").f(x) == x
+    assert half("struct S { highp float x; float y; }; S f(S s) { return s; }").f({"x": x, "y": x}) == (x, 1)
 
 
 def test_integers_stay_32_bits_wide(half):

@@ -304,6 +304,7 @@ def test_groups_in_turns(functions, monkeypatch, limit):
         ("int u = -7;", "float(u)", -7, 3),
         ("uint u = 4000000000u;", "float(u >> 24)", 4000000000 >> 24, 3),
         ("bool u = true;", "(u ? 1.0 : 2.0)", 1, False),
+        ("struct S { float a; vec2 b; } s = S(1.0, vec2(2.0, 4.0)); uniform float u = 3.0;", "(s.b.y + u)", 7, 4),
         ("float u[3] = float[](1.0, 2.0, 4.0);", "(u[0] + u[1] * u[2])", 9, [1, 1, 1]),
         ("ivec2 u[2] = ivec2[2](ivec2(1, 2), ivec2(3, 4));", "float(u[0].y + u[1].x)", 5, [[5, 6], [7, 8]]),
     ],
