@@ -4,6 +4,7 @@ from .call import shader
 from .compare import assert_ulp, ulp_difference
 from .errors import CallError, GlslError, HarnessError, NativeError, ProjectError
 from .render import render, render_floats
+from .texture_argument import Texture
 
 __all__ = [
     "CallError",
@@ -11,6 +12,7 @@ __all__ = [
     "HarnessError",
     "NativeError",
     "ProjectError",
+    "Texture",
     "assert_ulp",
     "render",
     "render_floats",

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from .errors import CallError, did_you_mean
-from .evaluation import leaves
+from .leaf import leaves
 from .results import tuple_type
-from .signature import DTYPES, Array, Numeric, Parameter, Signature, Struct, Type
+from .signature import DTYPES, Array, Numeric, Opaque, Parameter, Signature, Struct, Type
+from .texture_argument import SAMPLERS, Texture
 
 
 def bind(signature: Signature, args: Sequence, kwargs: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -32,11 +33,15 @@ def bind(signature: Signature, args: Sequence, kwargs: Mapping[str, Any]) -> tup
     return given, rest
 
 
-def numbers(parameter: Parameter, value: Any) -> list[np.ndarray]:
-    """The leaves of an argument, in the order of ``evaluation.leaves``: arrays (..., *shape of the leaf).
+def numbers(parameter: Parameter, value: Any) -> list[np.ndarray] | Texture:
+    """The leaves of an argument, in the order of ``leaves``: arrays (..., *shape of the leaf). A texture as it is.
 
     No number is copied that lies in an array already. CallError says what was expected and what was got.
     """
+    if isinstance(parameter.type, Opaque) and parameter.type.name in SAMPLERS:
+        if not isinstance(value, Texture):
+            raise CallError(f"{parameter.name} is a {parameter.type}: a harness.Texture, got {type(value).__name__}")
+        return value
     return list(_leaf_arrays(parameter.type, value, parameter.name))
 
 
@@ -44,9 +49,14 @@ def conversions(signature: Signature, given: Mapping[str, list[np.ndarray]]) -> 
     """How many leaves of the arguments are not of the parameter's own base type."""
     return sum(
         array.dtype.kind != np.dtype(DTYPES[leaf.type.base]).kind
-        for p in signature.inputs
+        for p in numeric(signature)
         for leaf, array in zip(leaves(p.type), given[p.name], strict=True)
     )
+
+
+def numeric(signature: Signature) -> list[Parameter]:
+    """The parameters that are given as arrays, those that are textures left out."""
+    return [p for p in signature.inputs if not isinstance(p.type, Opaque)]
 
 
 def dense(kind: Type) -> tuple[Numeric, tuple[int, ...]] | None:

@@ -17,7 +17,8 @@ import numpy as np
 from . import results
 from .arguments import counted
 from .errors import CallError
-from .evaluation import Evaluation, Leaf
+from .evaluation import Evaluation
+from .leaf import Leaf
 from .signature import Signature
 
 BLOCK = 1 << 18  # elements: the cost of starting a block is lost in it, and its buffers are a few MiB

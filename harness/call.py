@@ -20,7 +20,7 @@ def shader(
     """The functions of a GLSL file, callable by name.
 
     ``defines`` are macros, ``include_dirs`` the folders where includes are looked for, before those of the including
-    file and of the first one. ``mode`` is one of ``evaluation.MODES``. GlslError when it does not compile.
+    file and of the first one. ``mode`` is one of ``dialect.MODES``. GlslError when it does not compile.
     """
     known_mode(mode)
     return Shader(library.load(path, defines or {}, include_dirs), mode)

@@ -8,13 +8,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from . import values
-from .arguments import dense
+from .arguments import dense, numeric
 from .batches import common_batch
 from .errors import CallError
-from .evaluation import leaves
+from .leaf import leaves
 from .library import Library
 from .overloads import Chosen, key
 from .signature import Array, Struct, Type
+from .texture_argument import Texture
 
 
 def line(library: Library, chosen: Chosen, mode: str, index: int | tuple[int, ...] | None) -> str:
@@ -25,7 +26,10 @@ def line(library: Library, chosen: Chosen, mode: str, index: int | tuple[int, ..
     for name, text in single(chosen, index):
         words.append(f"{name}={text}")
     for name, value in chosen.rest.items():
-        words.append(f"{name}={values.written(value)}")
+        words.append(f"{name}={_texture(name, value) if isinstance(value, Texture) else values.written(value)}")
+    for p in signature.inputs:
+        if isinstance(chosen.numbers[p.name], Texture):
+            words.append(f"{p.name}={_texture(p.name, chosen.numbers[p.name])}")
     for name, text in library.defines.items():
         words += ["-D", f"{name}={text}"]
     for folder in library.include_dirs:
@@ -35,12 +39,19 @@ def line(library: Library, chosen: Chosen, mode: str, index: int | tuple[int, ..
     return shlex.join(words)
 
 
+def _texture(name: str, texture: Texture) -> str:
+    """A texture as ``harness call`` takes it. CallError where it cannot be had from a file alone."""
+    if texture.file is None:
+        raise CallError(f"{name} is {texture}, which no command line can give: only a picture's file, all else default")
+    return texture.file
+
+
 def single(chosen: Chosen, index: int | tuple[int, ...] | None) -> list[tuple[str, str]]:
     """(name, value as text) of the arguments of one element; members of structures by their own names."""
     signature = chosen.signature
     given = [
         (leaf, array)
-        for p in signature.inputs
+        for p in numeric(signature)
         for leaf, array in zip(leaves(p.type), chosen.numbers[p.name], strict=True)
     ]
     batch = common_batch([array.shape[: array.ndim - len(leaf.type.shape)] for leaf, array in given])
@@ -55,7 +66,7 @@ def single(chosen: Chosen, index: int | tuple[int, ...] | None) -> list[tuple[st
         one = iter([np.broadcast_to(array, batch + leaf.type.shape)[place] for leaf, array in given])
     except (IndexError, ValueError):
         raise CallError(f"no element {index} in a batch {batch}", *signature.origin) from None
-    return [pair for p in signature.inputs for pair in _pairs(p.type, p.name, one)]
+    return [pair for p in numeric(signature) for pair in _pairs(p.type, p.name, one)]
 
 
 def _pairs(kind: Type, name: str, numbers: Iterator[np.ndarray]) -> Iterator[tuple[str, str]]:

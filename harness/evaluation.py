@@ -1,259 +1,259 @@
-"""The test shader: one of our own around a single GLSL function, fed from arrays and read back into arrays.
-
-It is a compute stage where there is one, and a fragment stage elsewhere; both give the same bits.
-"""
+"""One GLSL function, compiled in one mode, over arrays: its inputs, uniforms, textures, and how much of it at once."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+import re
+import time
+from functools import cache
 
 import numpy as np
 
-from . import native, rewrite
+from . import dialect, loops, native, rewrite
 from .errors import CallError, GlslError, NativeError
 from .glsl import Source
+from .leaf import leaves
 from .native import gl_enums
-from .signature import DTYPES, VOID, Array, Numeric, Opaque, Signature, Struct, Type
+from .shader_text import Inputs
+from .signature import Opaque, Signature, signatures
+from .stages import ComputeStage, FragmentStage, Job, lanes
+from .texture_argument import SAMPLERS, Texture
 
-OUTPUT_FLOATS = 4  # a fragment output is a vec4
-OUTPUTS_MAX = 8  # the most that GL 3.3 promises
-
-#: name of the mode -> what it does to the source
-MODES = {
-    "as-written": "the source as it stands: the driver may rewrite its arithmetic",
-    "precise": "every operation as written, in the order written",
-}
-VERSION = 330  # the first that the test fragment can be written in
-PRECISE_VERSION = 400  # the first with `precise`
-COMPUTE_VERSION = 430  # the first with compute stages
+BUFFERS_MAX = 16  # arrays with a buffer of their own; GL promises 16 units a stage, and textures take some
+#: texture units below are those of the buffers
+FIRST_UNIT = BUFFERS_MAX
+#: elements that are evaluated at once where their numbers are copied together first
+PACKED_STEP = 1 << 16
+#: the same where loops are counted: few at first, for they may be endless; more while that takes less than this
+COUNTED_STEPS = 1 << 10, 1 << 18
+COUNTED_SECONDS = 0.05
 
 _FIRST = "[0]"
-_SAMPLERS = {
-    "float": "samplerBuffer",
-    "int": "isamplerBuffer",
-    "uint": "usamplerBuffer",
-    "bool": "usamplerBuffer",
-}
-_TO_BITS = {"int": "intBitsToFloat({})", "uint": "uintBitsToFloat({})", "bool": "uintBitsToFloat(uint({}))"}
-
-
-@dataclass(frozen=True)
-class Leaf:
-    """A numeric part of a value: ``path`` leads to it in GLSL (``.albedo``, ``[2]``), ``keys`` in Python."""
-
-    path: str
-    keys: tuple[str | int, ...]
-    type: Numeric
-
-    @cached_property
-    def size(self) -> int:
-        """How many numbers it has."""
-        return self.type.rows * self.type.columns
-
-    @cached_property
-    def components(self) -> int:
-        """Numbers per texel of its buffer: as many as divide it evenly, for each fetch costs."""
-        return next(n for n in (4, 3, 2, 1) if self.size % n == 0)
-
-    @cached_property
-    def texels(self) -> int:
-        """Texels per value."""
-        return self.size // self.components
-
-    @cached_property
-    def dtype(self) -> np.dtype:
-        """numpy's type of the 4-byte numbers that go through GL."""
-        return np.dtype(np.uint32 if self.type.base == "bool" else DTYPES[self.type.base])
-
-
-def leaves(kind: Type, path: str = "", keys: tuple[str | int, ...] = ()) -> Iterator[Leaf]:
-    """The numeric parts of a type. CallError for what is no data."""
-    if isinstance(kind, Struct):
-        for name, member in kind.members:
-            yield from leaves(member, f"{path}.{name}", (*keys, name))
-    elif isinstance(kind, Array):
-        for k in range(kind.length):
-            yield from leaves(kind.element, f"{path}[{k}]", (*keys, k))
-    elif isinstance(kind, Opaque) or kind.base not in DTYPES:
-        raise CallError(f"values of type {kind} cannot be passed as arrays")
-    else:
-        yield Leaf(path, keys, kind)
-
-
-def _order(kind: Numeric) -> list[int]:
-    """For each component in GLSL's order (column by column) its place in numpy's (row by row)."""
-    return np.arange(kind.rows * kind.columns).reshape(kind.rows, kind.columns).T.ravel().tolist()
-
-
-def _fetch(leaf: Leaf, buffer: str, target: str) -> str:
-    """GLSL that reads one value of a leaf from its buffer. The batch's end and single values repeat the last one."""
-    vector = {"float": "vec4", "int": "ivec4"}.get(leaf.type.base, "uvec4")
-    last = f"textureSize({buffer}) / {leaf.texels} - 1"
-    texel = f"(hn_i < {last} ? hn_i : {last}) * {leaf.texels}"  # not min(): a shader may have one of its own
-    fetched = [f"{vector} t{k} = texelFetch({buffer}, e + {k});" for k in range(leaf.texels)]
-    parts = [f"t{j // leaf.components}[{j % leaf.components}]" for j in _order(leaf.type)]
-    if leaf.type.base == "bool":
-        parts = [f"{part} != 0u" for part in parts]
-    return f"{{ int e = {texel}; {' '.join(fetched)} {target} = {leaf.type}({', '.join(parts)}); }}"
-
-
-def _numbers(leaf: Leaf, value: str) -> list[str]:
-    """GLSL for the numbers of a leaf as floats, in numpy's order."""
-    kind = leaf.type
-    bits = _TO_BITS.get(kind.base, "{}")
-    if kind.columns > 1:
-        return [bits.format(f"{value}[{c}][{r}]") for r in range(kind.rows) for c in range(kind.columns)]
-    return [bits.format(f"{value}[{r}]") for r in range(kind.rows)] if kind.rows > 1 else [bits.format(value)]
-
-
-def _at_least(version: int, text: str) -> str:
-    """The text, its #version raised where it is lower."""
-    stated, _, rest = text.partition("\n")
-    words = stated.split()
-    if int(words[1]) < version:
-        words[1] = str(version)
-    return f"{' '.join(words)}\n{rest}"
-
-
-def _finished(source: Source, rest: list[str], mode: str, version: int) -> str:
-    """The source with what is put after it, in a mode, for a version of GLSL at least."""
-    text = "\n".join([source.text.rstrip("\n"), *rest, ""])
-    return _at_least(version, rewrite.make_precise(text) if mode == "precise" else text)
 
 
 class Evaluation:
     """One GLSL function, compiled in one mode: ``run`` takes flat arrays and gives flat arrays."""
 
     def __init__(self, source: Source, signature: Signature, mode: str):
-        stated = source.text.partition("\n")[0].split()  # "#version", number, profile
-        if int(stated[1]) < VERSION or "es" in stated:
-            raise GlslError(f"{' '.join(stated)}: functions can be called from {VERSION} on", *source.origin(1))
+        """GlslError when the source does not compile in this mode, CallError when the function cannot be called."""
         self.signature = signature
+        spoken = dialect.dialect(source, mode)
+        self._source, self._spoken = source, spoken
+        text, initialised = rewrite.uniform_initialisers(source.text)
+        if spoken.translated:
+            source = dialect.replaced(source, text)
+            signature = self._translated(source)
         try:
+            opaque = [(n, p) for n, p in enumerate(signature.inputs) if isinstance(p.type, Opaque)]
+            for _, p in opaque:
+                if p.type.name not in SAMPLERS:
+                    known = ", ".join(SAMPLERS)
+                    raise CallError(f"{p.name} is a {p.type}, which cannot be given; of textures, {known} can")
+            #: parameter or uniform -> (the uniform that a texture is set by, its type)
+            self.samplers = {p.name: (f"hn_tex{n}", p.type.name) for n, p in opaque}
+            #: (parameter, [(name of the array in ``run``, leaf)]) of those that are numbers
             self.inputs = [
                 (p.name, [(f"hn_in{n}_{k}", leaf) for k, leaf in enumerate(leaves(p.type))])
                 for n, p in enumerate(signature.inputs)
+                if p.name not in self.samplers
             ]
             self.outputs = [(name, list(leaves(kind))) for name, kind in signature.outputs]
         except CallError as error:
             raise CallError(f"{error.message}; it is {signature}", *signature.origin) from None
-        widths = [
-            min(OUTPUT_FLOATS, leaf.size - start)
-            for _, parts in self.outputs
-            for leaf in parts
-            for start in range(0, leaf.size, OUTPUT_FLOATS)
-        ]
-        if not widths:
+        if not any(parts for _, parts in self.outputs):
             raise CallError(f"{signature} yields nothing", *signature.origin)
-        if len(widths) > OUTPUTS_MAX:
-            raise CallError(f"{signature} yields more than {OUTPUTS_MAX} vectors at once", *signature.origin)
-        self._widths = widths
+        given = [(name, buffer, leaf) for name, buffers in self.inputs for buffer, leaf in buffers]
+        inputs = Inputs(given, dict(self.samplers), packed=len(given) > BUFFERS_MAX)
+        self._set: dict[str, tuple[int, np.ndarray]] = {}
+        self._textures: dict[str, Texture] = {}
+        self._open(mode)
+        self._counts = lanes() is not None and loops.most_passes(source.text, signature.name) >= loops.CAP
+        self._packed = inputs.packed
+        self._stage = self._compiled(Job(source, spoken, signature, inputs, self.outputs, self._counts))
+        program = self._stage.program
+        #: those that the function reads; of an array the first element stands for all
+        self.uniforms = {n.removesuffix(_FIRST): u for n, u in program.uniforms.items() if not n.startswith("hn_")}
+        for name, uniform in self.uniforms.items():
+            kind = gl_enums.GLSL_TYPE_NAMES.get(uniform.type)
+            if kind in SAMPLERS:
+                self.samplers[name] = name, kind
+        #: uniforms that need not be given -> the value that the source gives them, in GL's order
+        self.initial = self._initial([name for name in self.uniforms if re.match(r"\w+", name)[0] in initialised])
+
+    def _open(self, mode: str) -> None:
+        native.open_context()
+        if mode == "mediump" and not _computes_in_half():
+            raise CallError(
+                f"mode mediump: this driver ({native.context_info()['renderer']}) computes it in single precision",
+                *self.signature.origin,
+            )
+
+    def _translated(self, source: Source) -> Signature:
+        """The function's signature in the dialect that the mode compiles, which has precisions."""
         try:
-            native.open_context()
-            self._program = self._compute_program(source, mode) or self._fragment_program(source, mode)
+            found = signatures(
+                dialect.checked(source, self._spoken),
+                rewrite.struct_names(source.text),
+                rewrite.result_names(source.text),
+            )
+        except GlslError as error:
+            raise self._refused(error) from None
+        own = self.signature
+        return next(s for s in found if (s.name, s.origin, str(s)) == (own.name, own.origin, str(own)))
+
+    def _refused(self, error: GlslError) -> GlslError:
+        if not self._spoken.translated:
+            return error
+        version = f"{self._spoken.version // 100}.{self._spoken.version % 100:02}"
+        told = f"in mode {self._spoken.mode} the source is compiled as GLSL ES {version}, which does not take this: "
+        return GlslError(told + error.message, error.file, error.line)
+
+    def _compiled(self, job: Job) -> ComputeStage | FragmentStage:
+        if native.compute_available():
+            try:
+                return ComputeStage(job, self._prepare)
+            except NativeError:
+                pass  # it needs what only a fragment has, or the other stage says better what is wrong
+        try:
+            return FragmentStage(job, self._prepare)
         except NativeError as error:
             stage, _, log = str(error).partition(": ")
-            raise source.error(log if stage in ("vertex", "fragment") else str(error)) from None
-        #: those that the function reads; of an array the first element stands for all
-        self.uniforms = {
-            n.removesuffix(_FIRST): u for n, u in self._program.uniforms.items() if not n.startswith("hn_")
-        }
-
-    def _fragment_program(self, source: Source, mode: str) -> native.Program:
-        declarations, body, numbers = self._call()
-        declarations += ["uniform int hn_first;", "uniform int hn_width;"]
-        index = "int hn_i = hn_first + int(gl_FragCoord.y) * hn_width + int(gl_FragCoord.x);"
-        for location, (values, width) in enumerate(zip(numbers, self._widths, strict=True)):
-            declarations.append(f"layout(location = {location}) out vec4 hn_out{location};")
-            body.append(f"hn_out{location} = vec4({', '.join(values + ['0.0'] * (OUTPUT_FLOATS - width))});")
-        main = ["void main()", "{", index, *body, "}"]
-        version = PRECISE_VERSION if mode == "precise" else VERSION
-        text = _finished(source, [*declarations, *main], mode, version)
-        return native.Program(native.evaluate_vertex(), text)
-
-    def _compute_program(self, source: Source, mode: str) -> native.Program | None:
-        """The same in a compute stage; None where there is none, or the function needs what only a fragment has."""
-        if not native.compute_available():
-            return None
-        declarations, body, numbers = self._call()
-        declarations.append("uniform int hn_count;")
-        for k, (values, width) in enumerate(zip(numbers, self._widths, strict=True)):
-            declarations.append(f"layout(std430, binding = {k}) writeonly buffer hn_Out{k} {{ float hn_out{k}[]; }};")
-            body += [f"hn_out{k}[hn_i * {width} + {c}] = {value};" for c, value in enumerate(values)]
-        index = ["int hn_i = int(gl_GlobalInvocationID.x);", "if (hn_i >= hn_count) return;"]
-        main = [native.compute_head(), "void main()", "{", *index, *body, "}"]
-        try:
-            return native.Program.compute(_finished(source, [*declarations, *main], mode, COMPUTE_VERSION))
-        except NativeError:
-            return None
-
-    def _call(self) -> tuple[list[str], list[str], list[list[str]]]:
-        """GLSL that reads the arguments of element hn_i and calls the function once.
-
-        Declarations, statements, and for each output vector the numbers that go into it.
-        """
-        parameters = [(f"hn_arg{n}", p) for n, p in enumerate(self.signature.parameters)]
-        variables = {p.name: variable for variable, p in parameters}
-        declarations = []
-        body = [f"{p.type} {variable};" for variable, p in parameters]
-        for name, buffers in self.inputs:
-            declarations += [f"uniform {_SAMPLERS[leaf.type.base]} {buffer};" for buffer, leaf in buffers]
-            body += [_fetch(leaf, buffer, f"{variables[name]}{leaf.path}") for buffer, leaf in buffers]
-        call = f"{self.signature.name}({', '.join(variables.values())});"
-        body += [call if self.signature.result == VOID else f"{self.signature.result} hn_result = {call}"]
-        results = [] if self.signature.result == VOID else ["hn_result"]
-        results += [variable for variable, p in parameters if p.direction != "in"]
-        vectors = []
-        for result, (_, parts) in zip(results, self.outputs, strict=True):
-            for leaf in parts:
-                numbers = _numbers(leaf, f"{result}{leaf.path}")
-                vectors += [numbers[k : k + OUTPUT_FLOATS] for k in range(0, len(numbers), OUTPUT_FLOATS)]
-        return declarations, body, vectors
+            found = self._source.error(log if stage in ("vertex", "fragment") else str(error))
+            raise self._refused(found) from None
 
     def array_length(self, name: str) -> int | None:
         """How many elements of a uniform the function reads; None where it is no array."""
-        return self.uniforms[name].size if name not in self._program.uniforms else None
+        return self.uniforms[name].size if name not in self._stage.program.uniforms else None
 
     def set_uniform(self, name: str, value: np.ndarray) -> None:
         """Sets a numeric uniform that the function reads; ``value`` in numpy's order, an array's elements first."""
         kind = self.uniforms[name].type
-        name = name if name in self._program.uniforms else name + _FIRST
         if gl_enums.GLSL_TYPE_NAMES[kind].startswith("mat"):
             value = value.swapaxes(-1, -2)
-        self._program.set_uniform(name, kind, value)
+        self._set_everywhere(name, kind, value)
+
+    def reset_uniform(self, name: str) -> None:
+        """Gives a uniform of ``initial`` the value that the source states."""
+        self._set_everywhere(name, self.uniforms[name].type, self.initial[name])
+
+    def set_sampler(self, name: str, texture: Texture) -> None:
+        """Sets the texture of a parameter or a uniform, one of ``samplers``. CallError when it is of another kind."""
+        kind = self.samplers[name][1]
+        if not isinstance(texture, Texture):
+            message = f"{name} is a {kind}: give it a harness.Texture, got {type(texture).__name__}"
+            raise CallError(f"{message}; it is {self.signature}", *self.signature.origin)
+        if texture.sampler != kind:
+            message = f"{name} is a {kind}, but {texture} is one for a {texture.sampler}"
+            raise CallError(f"{message}; it is {self.signature}", *self.signature.origin)
+        self._textures[name] = texture
+
+    def _set_everywhere(self, name: str, kind: int, value: np.ndarray) -> None:
+        self._set[name] = kind, value
+        for program in self._stage.programs():
+            _set_uniform(program, name, kind, value)
+
+    def _prepare(self, program: native.Program) -> None:
+        """Sets the uniforms of a program that was compiled after they were given."""
+        for name, (kind, value) in self._set.items():
+            _set_uniform(program, name, kind, value)
+
+    def _initial(self, names: list[str]) -> dict[str, np.ndarray]:
+        if (
+            names and self._spoken.translated
+        ):  # GLSL ES has no initialisers: what the source's own language makes of them
+            known = Evaluation(self._source, self.signature, "as-written").initial
+            return {name: known[name] for name in names if name in known}
+        program = self._stage.program
+        return {
+            name: program.uniform(name if name in program.uniforms else name + _FIRST, self.uniforms[name].size)
+            for name in names
+        }
+
+    def _bind_textures(self) -> None:
+        for unit, (name, texture) in enumerate(self._textures.items(), FIRST_UNIT):
+            texture.bind(unit)
+            self._set_everywhere(self.samplers[name][0], gl_enums.GL_SAMPLER_2D, np.int32([unit]))
 
     def run(self, arrays: dict[str, np.ndarray], count: int) -> list[list[np.ndarray]]:
         """Evaluates the function ``count`` times.
 
         ``arrays`` maps each buffer's name to (count, size) or (1, size) numbers of the leaf's dtype, C-contiguous.
-        Returns for each output its leaves, as arrays (count, size).
+        Returns for each output its leaves, as arrays (count, size). CallError when a loop was stopped by the driver.
         """
-        given = [(buffer, leaf) for _, buffers in self.inputs for buffer, leaf in buffers]
-        planes = [np.empty((count, width), np.float32) for width in self._widths]
-        step = native.evaluate_limit() // max([1, *(leaf.texels for _, leaf in given)])
-        if native.compute_available():
-            step = min(step, native.compute_limit(max(self._widths)))
-        step = step // 4 * 4 or step  # every part of an array aligned like the first, so that none is copied
-        for first in range(0, count, step):
+        stage = self._stage
+        planes = [np.empty((count, size), np.float32) for size in stage.planes]
+        if self._textures:
+            self._bind_textures()
+        most = self._most()
+        step = min(most, COUNTED_STEPS[0]) if self._counts else most
+        first = 0
+        while first < count:
             n = min(step, count - first)
-            texels = {
-                buffer: (a if len(a) == 1 else a[first : first + n]).reshape(-1, leaf.components)
-                for buffer, leaf in given
-                for a in (arrays[buffer],)
-            }
-            self._program.evaluate(texels, [plane[first : first + n] for plane in planes], n)
-        return self._assembled(planes)
+            some = {name: a if len(a) == 1 else a[first : first + n] for name, a in arrays.items()}
+            parts = [plane[first : first + n] for plane in planes]
+            if self._counts:
+                start = time.perf_counter()
+                self._run_counted(some, parts, n)
+                if time.perf_counter() - start < COUNTED_SECONDS:
+                    step = min(2 * step, most, COUNTED_STEPS[1])
+            else:
+                stage.run(some, parts, n)
+            first += n
+        rest = iter(stage.values(planes))
+        return [
+            [next(rest).view(leaf.dtype) if leaf.type.base != "float" else next(rest) for leaf in parts]
+            for _, parts in self.outputs
+        ]
 
-    def _assembled(self, planes: list[np.ndarray]) -> list[list[np.ndarray]]:
-        rest = iter(planes)
-        outputs = []
-        for _, parts in self.outputs:
-            values = []
-            for leaf in parts:
-                pieces = [next(rest) for _ in range(0, leaf.size, OUTPUT_FLOATS)]
-                value = pieces[0] if len(pieces) == 1 else np.concatenate(pieces, axis=1)
-                values.append(value.view(leaf.dtype) if leaf.type.base != "float" else value)
-            outputs.append(values)
-        return outputs
+    def _most(self) -> int:
+        """How many elements at once; every part of an array aligned like the first, so that none is copied."""
+        texels = [leaf.texels for _, buffers in self.inputs for _, leaf in buffers]
+        packed = sum(leaf.size for _, buffers in self.inputs for _, leaf in buffers) // 4 + 1
+        most = native.evaluate_limit() // (packed if self._packed else max([1, *texels]))
+        most = min(most, self._stage.limit(), PACKED_STEP if self._packed else most)
+        return max(most // 4 * 4 or most, 1)
+
+    def _run_counted(self, arrays: dict[str, np.ndarray], planes: list[np.ndarray], count: int) -> None:
+        """Evaluates, and asks whether a loop was stopped."""
+        passes = np.empty((count, 1), np.float32)
+        self._stage.run(arrays, [*planes, passes], count)
+        if passes.view(np.int32).max(initial=0) <= loops.SURE:
+            return
+        if isinstance(self._stage, FragmentStage):
+            raise CallError(
+                f"the loops of {self.signature} ran more than {loops.SURE} passes for one element; in a fragment "
+                "stage, which it needs, the software renderer may have stopped them silently",
+                *self.signature.origin,
+            )
+        line = self._stage.line_where_stopped(arrays, [*planes, passes], count)
+        if line:
+            raise CallError(
+                f"the loops of {self.signature} ran {loops.CAP} passes for one element, this one the last, where the "
+                "software renderer stops them silently: it is endless, or needs a smaller bound",
+                *self._source.origin(line),
+            )
+
+
+def _set_uniform(program: native.Program, name: str, kind: int, value: np.ndarray) -> None:
+    """Sets a uniform, or an array from its first element on, where the program reads it."""
+    name = name if name in program.uniforms else name + _FIRST
+    if name in program.uniforms:
+        program.set_uniform(name, kind, value)
+
+
+@cache
+def _computes_in_half() -> bool:
+    """Whether the driver's mediump is half precision: (1 + 2^-11) - 1 is 0 there. Not every processor has it."""
+    source = Source("", "#version 330\n", (("", 1),))
+    rest = [
+        native.compute_head(),
+        "uniform highp samplerBuffer hn_x; uniform highp int hn_count;",
+        "layout(std430, binding = 0) writeonly buffer hn_Out { highp float hn_out[]; };",
+        "void main() { vec2 x = texelFetch(hn_x, 0).xy; float sum = x.x + x.y, left = sum - x.x; hn_out[0] = left; }",
+    ]
+    spoken = dialect.dialect(source, "mediump")
+    if not native.compute_available():
+        return False
+    program = native.Program.compute(dialect.complete(source, rest, spoken, compute=True))
+    result = np.empty((1, 1), np.float32)
+    program.evaluate({"hn_x": np.float32([[1, 2**-11]])}, [result], 1)
+    return bool(result[0, 0] == 0)

@@ -6,11 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import batches, overloads
+from .dialect import MODES
 from .errors import CallError, HarnessError, among
-from .evaluation import MODES, Evaluation
+from .evaluation import Evaluation
 from .glsl import Source
 from .library import Library
 from .signature import Signature
+from .texture_argument import Texture
 from .uniform_values import set_all
 
 if TYPE_CHECKING:  # what few callers need is loaded when they do
@@ -107,7 +109,11 @@ class Function:
         arguments do not fit.
         """
         signature, numbers, rest = self._overload(args, kwargs)
-        return batches.evaluate(self._ready(signature, rest), numbers, out)
+        evaluation = self._ready(signature, rest)
+        for name, value in numbers.items():
+            if isinstance(value, Texture):
+                evaluation.set_sampler(name, value)
+        return batches.evaluate(evaluation, numbers, out)
 
     def stream(self, chunks: Iterable[Mapping[str, Any]], /, **constant) -> Iterator[Any]:
         """Evaluates chunk after chunk, each a dict of arguments by name; yields the results, holding none.
@@ -159,15 +165,11 @@ class Function:
         return overloads.choose(self._overloads, args, kwargs, self._library.path)
 
     def _ready(self, signature: Signature, uniforms: Mapping[str, Any]) -> Evaluation:
-        """The compiled function, its uniforms set.
-
-        What sets a uniform that the file gives a value is compiled apart: in the other the value is still there.
-        """
-        given = self._library.initialised.intersection(uniforms) if uniforms else None
-        place = (signature, self._mode, given)
+        """The compiled function, its uniforms set."""
+        place = (signature, self._mode)
         if place not in self._library.compiled:
             self._library.compiled[place] = _engine(self._library.source, signature, self._mode)
         evaluation = self._library.compiled[place]
         if uniforms or evaluation.uniforms:
-            set_all(evaluation, uniforms, self._library.initialised)
+            set_all(evaluation, uniforms)
         return evaluation

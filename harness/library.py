@@ -8,10 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from . import comments, glsl, native, rewrite
+from . import comments, dialect, glsl, native, rewrite
 from .native import Stage
 from .signature import Signature, signatures
-from .uniform_values import initialised
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,11 +33,6 @@ class Library:
         """The comment directly above each function, "" where there is none."""
         return comments.above(self.signatures)
 
-    @cached_property
-    def initialised(self) -> frozenset[str]:
-        """The uniforms that the file gives a value, so that a call need not."""
-        return initialised(self.source.text)
-
 
 def load(path: str | Path, defines: Mapping[str, Any], include_dirs: Sequence[str | Path]) -> Library:
     """Reads a file, its includes and its signatures. GlslError when it does not compile."""
@@ -50,5 +44,5 @@ def load(path: str | Path, defines: Mapping[str, Any], include_dirs: Sequence[st
     except native.NativeError as error:
         raise source.error(str(error)) from None
     plain = replace(source, text=text, written=source.text)
-    functions = signatures(plain, rewrite.struct_names(text), rewrite.result_names(text))
+    functions = signatures(dialect.checked(plain), rewrite.struct_names(text), rewrite.result_names(text))
     return Library(macros, [str(folder) for folder in include_dirs], plain, functions)

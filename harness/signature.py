@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -21,11 +21,15 @@ _VECTOR_PREFIX = {"float": "vec", "int": "ivec", "uint": "uvec", "bool": "bvec",
 
 @dataclass(frozen=True)
 class Numeric:
-    """A scalar, vector or matrix: ``columns`` x ``rows`` numbers of ``base``; a vector is one column."""
+    """A scalar, vector or matrix: ``columns`` x ``rows`` numbers of ``base``; a vector is one column.
+
+    ``precision`` is what GLSL ES makes of it, highp, mediump or lowp; it tells no two types apart.
+    """
 
     base: str
     rows: int = 1
     columns: int = 1
+    precision: str = field(default="", compare=False)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -127,9 +131,6 @@ class _TypeReader:
         "in",
         "out",
         "inout",
-        "highp",
-        "mediump",
-        "lowp",
         "precise",
         "noContraction",
     }
@@ -144,13 +145,17 @@ class _TypeReader:
         return match
 
     def read(self) -> Type:
+        """The next type of the text."""
+        precision = ""
         while True:
+            if match := self._take(r"(highp|mediump|lowp)\b"):
+                precision = match[1]
             if match := self._take(r"(\d+)-element array of\b"):
                 return Array(self.read(), int(match[1]))
             if match := self._take(r"(\d+)-component vector of (\w+)"):
-                return Numeric(match[2], int(match[1]))
+                return Numeric(match[2], int(match[1]), 1, precision)
             if match := self._take(r"(\d+)X(\d+) matrix of (\w+)"):
-                return Numeric(match[3], int(match[2]), int(match[1]))
+                return Numeric(match[3], int(match[2]), int(match[1]), precision)
             if self._take(r"structure\{"):
                 return self._members()
             match = self._take(r"([\w.]+)")
@@ -158,7 +163,7 @@ class _TypeReader:
                 raise ValueError(f"glslang names a type that is not understood: {self.rest!r}")
             if match[1] not in self._SKIPPED:
                 known = match[1] in ("float", "int", "uint", "bool", "double")
-                return Numeric(match[1]) if known else Opaque(match[1])
+                return Numeric(match[1], 1, 1, precision) if known else Opaque(match[1])
 
     def _members(self) -> Struct:
         members = []

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from .arguments import array, dense
 from .errors import CallError, did_you_mean
-from .evaluation import Evaluation, Leaf
+from .evaluation import Evaluation
+from .leaf import Leaf
 from .native import gl_enums
 from .signature import DTYPES, Array, Numeric
+from .texture_argument import SAMPLERS
 
 _TYPES = {
     str(kind): kind
@@ -26,7 +27,7 @@ _TYPES = {
 _GL_DTYPES = {base: Leaf("", (), Numeric(base)).dtype for base in DTYPES}
 
 
-def set_all(evaluation: Evaluation, given: Mapping[str, Any], initialised: Collection[str]) -> None:
+def set_all(evaluation: Evaluation, given: Mapping[str, Any]) -> None:
     """Sets every uniform that the function reads.
 
     Those that the file gives a value may be left out, and keep it. CallError names what is missing, unknown, or does
@@ -40,14 +41,22 @@ def set_all(evaluation: Evaluation, given: Mapping[str, Any], initialised: Colle
             raise CallError(message, *signature.origin)
     for name, uniform in evaluation.uniforms.items():
         try:
-            _set(evaluation, name, uniform, given, initialised)
+            _set(evaluation, name, uniform, given)
         except CallError as error:
             raise CallError(error.message, *signature.origin) from None
 
 
-def _set(evaluation: Evaluation, name: str, uniform: Any, given: Mapping, initialised: Collection[str]) -> None:
+def _set(evaluation: Evaluation, name: str, uniform: Any, given: Mapping) -> None:
     function = evaluation.signature.name
     stated = gl_enums.GLSL_TYPE_NAMES.get(uniform.type, f"type 0x{uniform.type:x}")
+    if stated in SAMPLERS:
+        if name not in given:
+            raise CallError(f"{function} reads the uniform {stated} {name}: give it a Texture by its name")
+        evaluation.set_sampler(name, given[name])
+        return
+    if name in evaluation.initial and name not in given:
+        evaluation.reset_uniform(name)
+        return
     if stated not in _TYPES:
         raise CallError(f"{function} reads the uniform {stated} {name}, which cannot be given")
     if uniform.location < 0:
@@ -55,8 +64,6 @@ def _set(evaluation: Evaluation, name: str, uniform: Any, given: Mapping, initia
     length = evaluation.array_length(name)
     kind = _TYPES[stated] if length is None else Array(_TYPES[stated], length)
     if name not in given:
-        if re.match(r"\w+", name)[0] in initialised:
-            return
         raise CallError(f"{function} reads the uniform {kind} {name}: give it by its name")
     number, shape = dense(kind)
     value = given[name]
@@ -69,14 +76,3 @@ def _set(evaluation: Evaluation, name: str, uniform: Any, given: Mapping, initia
     if value.shape != shape:
         raise CallError(f"uniform {name} is one {kind}, not an array of them")
     evaluation.set_uniform(name, value.astype(_GL_DTYPES[number.base], copy=False))
-
-
-def initialised(text: str) -> frozenset[str]:
-    """The uniforms that a preprocessed text declares with a value, as in ``uniform float gain = 2.0;``."""
-    names = set()
-    for declared in re.findall(r"\buniform\b([^;]*);", text):
-        outer = declared
-        while (inner := re.sub(r"\([^()]*\)|\{[^{}]*\}|\[[^][]*\]", " ", outer)) != outer:
-            outer = inner
-        names.update(re.findall(r"(\w+)\s*=", outer))
-    return frozenset(names)

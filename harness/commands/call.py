@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 SHORT = "call a GLSL function"
 DESCRIPTION = """\
 Calls a function of a GLSL file and prints what it returns. Values are numbers, in decimal or hexadecimal, vectors as
-1,2,3 or [1,2,3], true and false; members of a struct are given by their names; a longer list is a batch, and everything
-broadcasts as in numpy. --mode all compares the modes.
+1,2,3 or [1,2,3], true and false; a texture is the path of a picture; members of a struct are given by their names; a
+longer list is a batch, and everything broadcasts as in numpy. --mode all compares the modes.
 
   harness call shaders/brdf.glsl D_GGX NoH=1 alpha=0x1p-2
   harness call shaders/brdf.glsl 'F_Schlick(vec3, float)' F0=0.04,0.04,0.04 LoH=[0,0.5,1]
@@ -48,13 +48,16 @@ def run(options: argparse.Namespace) -> None:
 
 def _arguments(function: Function, given: Iterable[tuple[str, str]]) -> dict[str, Any]:
     """Arguments and uniforms by name, structures put together from their members."""
+    from ..texture_argument import SAMPLERS, Texture
     from ..values import read
 
-    parameters = {p.name for signature in function.signatures for p in signature.inputs}
+    inputs = [p for signature in function.signatures for p in signature.inputs]
+    parameters = {p.name for p in inputs}
+    textures = {p.name for p in inputs if str(p.type) in SAMPLERS}
     arguments: dict[str, Any] = {}
     for name, text in given:
         try:
-            value = read(text)
+            value = Texture(text) if name in textures else read(text)
         except CallError as error:
             raise CallError(f"{name}={text}: {error.message}") from None
         _put(arguments, name, value, parameters)

@@ -109,9 +109,10 @@ _PROTOTYPES = {
     "hn_program_uniforms": (_INT, [_UINT, _VARIABLES, _INT]),
     "hn_program_attributes": (_INT, [_UINT, _VARIABLES, _INT]),
     "hn_program_uniform": (_INT, [_UINT, ctypes.c_int32, _UINT, ctypes.c_int32, _POINTER]),
+    "hn_program_uniform_read": (_INT, [_UINT, ctypes.c_int32, _UINT, _INT, _POINTER]),
     "hn_evaluate": (_INT, [_UINT, ctypes.POINTER(_Input), _INT, ctypes.POINTER(_Output), _INT, _SIZE]),
     "hn_program_create_compute": (_UINT, [_TEXT]),
-    "hn_compute": (_INT, [_UINT, ctypes.POINTER(_Input), _INT, ctypes.POINTER(_Output), _INT, _SIZE]),
+    "hn_compute": (_INT, [_UINT, ctypes.POINTER(_Input), _INT, ctypes.POINTER(_Output), _INT, _SIZE, _UINT]),
     "hn_compute_available": (_INT, []),
     "hn_compute_head": (_TEXT, []),
     "hn_compute_limit": (_SIZE, [_UINT]),
@@ -121,6 +122,7 @@ _PROTOTYPES = {
     "hn_mesh_create": (_POINTER, [_POINTER, _SIZE, _POINTER, _SIZE]),
     "hn_mesh_delete": (None, [_POINTER]),
     "hn_texture_create": (_UINT, [_INT, _INT, _POINTER, _UINT, _UINT, _UINT, _UINT]),
+    "hn_texture_create_as": (_UINT, [_UINT, _INT, _INT, _POINTER, _UINT, _UINT, _UINT, _UINT]),
     "hn_texture_delete": (None, [_UINT]),
     "hn_texture_bind": (_INT, [_INT, _UINT]),
     "hn_target_create": (_POINTER, [_INT, _INT, _INT]),
@@ -134,6 +136,15 @@ _PROTOTYPES = {
 
 #: kind of a numpy type -> type of a texel's numbers
 _BASES = {"f": gl_enums.GL_FLOAT, "i": gl_enums.GL_INT, "u": gl_enums.GL_UNSIGNED_INT}
+
+
+#: format of a texture -> numpy's type of its numbers
+_TEXELS = {
+    gl_enums.GL_RGBA8: np.uint8,
+    gl_enums.GL_RGBA32F: np.float32,
+    gl_enums.GL_RGBA32I: np.int32,
+    gl_enums.GL_RGBA32UI: np.uint32,
+}
 
 
 def _load() -> ctypes.CDLL:
@@ -252,18 +263,19 @@ class Program:
     """
 
     def __init__(self, vertex: str, fragment: str):
-        self._take(_library.hn_program_create(vertex.encode(), fragment.encode()), _library.hn_evaluate)
+        self._take(_library.hn_program_create(vertex.encode(), fragment.encode()), compute=False)
 
     @classmethod
     def compute(cls, text: str) -> Program:
         """A program of one compute stage."""
         program = cls.__new__(cls)
-        program._take(_library.hn_program_create_compute(text.encode()), _library.hn_compute)
+        program._take(_library.hn_program_create_compute(text.encode()), compute=True)
         return program
 
-    def _take(self, name: int, evaluate) -> None:
+    def _take(self, name: int, *, compute: bool) -> None:
         self._name = _made(name)
-        self._evaluate = evaluate
+        self._is_compute = compute
+        self._evaluate = _library.hn_compute if compute else _library.hn_evaluate
         self.uniforms = self._variables(_library.hn_program_uniforms)
         self.attributes = self._variables(_library.hn_program_attributes)
 
@@ -283,12 +295,28 @@ class Program:
         count = values.size // gl_enums.COMPONENTS.get(gl_type, 1)
         _done(_library.hn_program_uniform(self._name, variable.location, gl_type, count, values.ctypes.data))
 
-    def evaluate(self, inputs: Mapping[str, np.ndarray], outputs: Sequence[np.ndarray], count: int) -> None:
-        """Runs the fragment or compute stage for ``count`` elements.
+    def uniform(self, name: str, count: int = 1) -> np.ndarray:
+        """The values of the first ``count`` elements of a numeric uniform, (count, components), matrices by columns.
+
+        float32, or int32 for all types that are no floats.
+        """
+        variable = self.uniforms[name]
+        is_float = gl_enums.GLSL_TYPE_NAMES[variable.type].startswith(("float", "vec", "mat"))
+        values = np.empty((count, gl_enums.COMPONENTS.get(variable.type, 1)), np.float32 if is_float else np.int32)
+        for k, value in enumerate(values):
+            where, size = variable.location + k, value.size
+            _done(_library.hn_program_uniform_read(self._name, where, variable.type, size, _address(value)))
+        return values
+
+    def evaluate(
+        self, inputs: Mapping[str, np.ndarray], outputs: Sequence[np.ndarray], count: int, each: int = 1
+    ) -> None:
+        """Runs the fragment or compute stage for ``count`` elements; an invocation of a compute stage does ``each``.
 
         ``inputs`` maps the name of a buffer sampler to a C-contiguous array (texels, components) of float32, int32 or
         uint32; ``outputs`` are C-contiguous float32 arrays (count, components), filled in place.
         """
+        extra = (each,) if self._is_compute else ()
         ins = (_Input * len(inputs))(
             *(
                 (name.encode(), _address(array), _BASES[array.dtype.kind], array.shape[1], array.shape[0])
@@ -296,7 +324,7 @@ class Program:
             )
         )
         outs = (_Output * len(outputs))(*((_address(array), array.shape[1]) for array in outputs))
-        _done(self._evaluate(self._name, ins, len(ins), outs, len(outs), count))
+        _done(self._evaluate(self._name, ins, len(ins), outs, len(outs), count, *extra))
 
     def __del__(self):
         if getattr(self, "_name", 0):
@@ -333,15 +361,29 @@ class Mesh:
 
 
 class Texture:
-    """An 8-bit RGBA texture; ``pixels`` (h, w, 4) uint8 with row 0 at v = 0, filters and wraps GL's."""
+    """A texture; ``texels`` (h, w, 4) with row 0 at v = 0, filters and wraps GL's.
 
-    def __init__(self, pixels: np.ndarray, min_filter: int, mag_filter: int, wrap_s: int, wrap_t: int):
-        pixels = np.ascontiguousarray(pixels, np.uint8)
-        height, width, channels = pixels.shape
+    ``texel_format`` is GL's: GL_RGBA8 takes uint8, GL_RGBA32F float32, GL_RGBA32I and GL_RGBA32UI
+    int32 and uint32.
+    """
+
+    def __init__(
+        self,
+        texels: np.ndarray,
+        min_filter: int,
+        mag_filter: int,
+        wrap_s: int,
+        wrap_t: int,
+        texel_format: int = gl_enums.GL_RGBA8,
+    ):
+        texels = np.ascontiguousarray(texels, _TEXELS[texel_format])
+        height, width, channels = texels.shape
         if channels != 4:
-            raise ValueError(f"pixels of shape {pixels.shape}, not (h, w, 4)")
+            raise ValueError(f"texels of shape {texels.shape}, not (h, w, 4)")
         self._name = _made(
-            _library.hn_texture_create(width, height, pixels.ctypes.data, min_filter, mag_filter, wrap_s, wrap_t)
+            _library.hn_texture_create_as(
+                texel_format, width, height, texels.ctypes.data, min_filter, mag_filter, wrap_s, wrap_t
+            )
         )
 
     def bind(self, unit: int) -> None:

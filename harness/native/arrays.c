@@ -40,7 +40,8 @@ static GLenum texel_format(uint32_t base, uint32_t components) {
     }
 }
 
-int hn_arrays_check(const hn_input *inputs, int n_inputs, const hn_output *outputs, int n_outputs) {
+int hn_arrays_check(const hn_input *inputs, int n_inputs, const hn_output *outputs, int n_outputs,
+                    uint32_t components_max) {
     GLint units = 0;
     gl.GetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
     units = units < HN_INPUTS_MAX ? units : HN_INPUTS_MAX;
@@ -58,9 +59,9 @@ int hn_arrays_check(const hn_input *inputs, int n_inputs, const hn_output *outpu
                            input->count, hn_evaluate_limit());
     }
     for (int k = 0; k < n_outputs; ++k)
-        if (outputs[k].components < 1 || outputs[k].components > 4)
-            return hn_fail("hn_evaluate: output %d: %u components, but 1 ... 4 can be", k,
-                           outputs[k].components);
+        if (outputs[k].components < 1 || outputs[k].components > components_max)
+            return hn_fail("hn_evaluate: output %d: %u components, but 1 ... %u can be", k,
+                           outputs[k].components, components_max);
     return 0;
 }
 

@@ -5,7 +5,7 @@
  */
 #include "internal.h"
 
-enum { GROUP = 256, GROUPS_MAX = 65535 /* the fewest that GL 4.3 promises */ };
+enum { GROUP = 256, /* as in hn_compute_head() */ GROUPS_MAX = 65535 /* the fewest that GL 4.3 promises */ };
 
 int hn_compute_available(void) {
     return hn_context_check("hn_compute_available") == 0 && gl.DispatchCompute != NULL;
@@ -22,11 +22,13 @@ size_t hn_compute_limit(uint32_t components) {
 }
 
 int hn_compute(uint32_t program, const hn_input *inputs, int n_inputs, const hn_output *outputs,
-               int n_outputs, size_t count) {
+               int n_outputs, size_t count, uint32_t each) {
     if (!hn_compute_available())
         return hn_fail("hn_compute: this context has no compute stage");
-    if (hn_arrays_check(inputs, n_inputs, outputs, n_outputs))
+    if (hn_arrays_check(inputs, n_inputs, outputs, n_outputs, HN_COMPONENTS_MAX))
         return -1;
+    if (each < 1)
+        return hn_fail("hn_compute: %u elements an invocation", each);
     for (int k = 0; k < n_outputs; ++k)
         if (count > hn_compute_limit(outputs[k].components))
             return hn_fail("hn_compute: %zu elements of output %d, but at most %zu at a time", count, k,
@@ -49,7 +51,8 @@ int hn_compute(uint32_t program, const hn_input *inputs, int n_inputs, const hn_
     if (!failed)
         failed = hn_check_gl("hn_compute: outputs of program %u", program);
     if (!failed) {
-        gl.DispatchCompute((GLuint)((count + GROUP - 1) / GROUP), 1, 1);
+        size_t group = (size_t)GROUP * each;
+        gl.DispatchCompute((GLuint)((count + group - 1) / group), 1, 1);
         gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     }
     gl.Finish(); /* the caller may use or free pinned memory from here on */

@@ -127,7 +127,7 @@ int hn_evaluate(uint32_t program, const hn_input *inputs, int n_inputs, const hn
                 int n_outputs, size_t count) {
     if (hn_context_check("hn_evaluate"))
         return -1;
-    if (hn_arrays_check(inputs, n_inputs, outputs, n_outputs))
+    if (hn_arrays_check(inputs, n_inputs, outputs, n_outputs, 4))
         return -1;
     GLint attachments = 0;
     gl.GetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &attachments);

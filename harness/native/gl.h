@@ -64,6 +64,9 @@
     X(PFNGLGETSTRINGPROC, GetString)                             \
     X(PFNGLGETSTRINGIPROC, GetStringi)                           \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
+    X(PFNGLGETUNIFORMFVPROC, GetUniformfv)                       \
+    X(PFNGLGETUNIFORMIVPROC, GetUniformiv)                       \
+    X(PFNGLGETUNIFORMUIVPROC, GetUniformuiv)                     \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
     X(PFNGLREADBUFFERPROC, ReadBuffer)                           \

@@ -85,6 +85,9 @@ int hn_program_attributes(uint32_t program, hn_variable *out, int capacity);
 /* Sets one uniform. `type` is GL's (GL_FLOAT ... GL_FLOAT_MAT4, GL_INT*, GL_UNSIGNED_INT*, GL_BOOL*, samplers
  * as their unit); `data` holds `count` elements of 4-byte components, matrices column by column. */
 int hn_program_uniform(uint32_t program, int32_t location, uint32_t type, int32_t count, const void *data);
+/* Reads one element of a uniform: `components` values of 4 bytes (at most 16), matrices column by column; as floats
+ * where `type` is one of GL_FLOAT ..., else as integers. */
+int hn_program_uniform_read(uint32_t program, int32_t location, uint32_t type, int components, void *data);
 
 /* ---- Evaluation over arrays (evaluate.c, compute.c, arrays.c) ------------------------------------------ */
 
@@ -101,8 +104,8 @@ typedef struct {
 
 /* One output array, of which each element is the first `components` numbers of a vector. */
 typedef struct {
-    float *data; /* count * components floats, bit for bit as the shader made them */
-    uint32_t components;
+    float *data;         /* count * components floats, bit for bit as the shader made them */
+    uint32_t components; /* 1 ... 4; of a compute stage any number */
 } hn_output;
 
 /* Runs a program made with hn_evaluate_vertex() once for each i = 0 ... count-1, where its fragment stage
@@ -118,11 +121,12 @@ size_t hn_evaluate_limit(void);
 
 /* Whether the context has compute stages (GL 4.3), which evaluate faster and need no memory of their own. */
 int hn_compute_available(void);
-/* The same by a compute program whose text begins, after its #version, with hn_compute_head(). It finds
- *     i = int(gl_GlobalInvocationID.x), and leaves when i >= hn_count, `uniform int hn_count`.
+/* The same by a compute program whose text has hn_compute_head() before its main(). An invocation evaluates `each`
+ * elements, the first of them
+ *     i = int(gl_GlobalInvocationID.x) * each, and leaves when i >= hn_count, `uniform int hn_count`.
  * Output k is the shader storage block of binding k, an array of floats: components of them for each element. */
 int hn_compute(uint32_t program, const hn_input *inputs, int n_inputs, const hn_output *outputs,
-               int n_outputs, size_t count);
+               int n_outputs, size_t count, uint32_t each);
 const char *hn_compute_head(void);
 /* The most elements of so many components that one hn_compute takes, a multiple of 4. */
 size_t hn_compute_limit(uint32_t components);
@@ -153,6 +157,10 @@ size_t hn_mesh_index_count(const hn_mesh *mesh);
 
 /* ---- Textures (texture.c) ------------------------------------------------------------------------------ */
 
+/* A texture of RGBA texels in one of GL's formats, mipmaps made but for integers: GL_RGBA8
+ * (from 4 bytes a texel), GL_RGBA32F, GL_RGBA32I and GL_RGBA32UI (from 16). */
+uint32_t hn_texture_create_as(uint32_t format, int width, int height, const void *texels, uint32_t min_filter,
+                              uint32_t mag_filter, uint32_t wrap_s, uint32_t wrap_t);
 /* An 8-bit RGBA texture without colour conversion, mipmaps made; `wrap` and filters are GL's. */
 uint32_t hn_texture_create(int width, int height, const uint8_t *rgba, uint32_t min_filter,
                            uint32_t mag_filter, uint32_t wrap_s, uint32_t wrap_t);

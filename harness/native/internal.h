@@ -38,10 +38,11 @@ typedef struct {
     size_t first_vertex, n_vertices, first_index, n_indices;
 } hn_part;
 
-enum { HN_INPUTS_MAX = 64, HN_OUTPUTS_MAX = 8 };
+enum { HN_INPUTS_MAX = 64, HN_OUTPUTS_MAX = 8, HN_COMPONENTS_MAX = 1 << 16 };
 
-/* Fails unless the arrays of an evaluation are such as can be. */
-int hn_arrays_check(const hn_input *inputs, int n_inputs, const hn_output *outputs, int n_outputs);
+/* Fails unless the arrays of an evaluation are such as can be; an output has at most `components_max` components. */
+int hn_arrays_check(const hn_input *inputs, int n_inputs, const hn_output *outputs, int n_outputs,
+                    uint32_t components_max);
 /* Makes `buffer` a buffer over the caller's memory and returns 1; where that cannot be, one of the same size, filled
  * when it is an `input`, and returns 0. */
 int hn_buffer_over(uint32_t binding, uint32_t buffer, const void *data, size_t size, int input);

@@ -224,3 +224,44 @@ int hn_program_uniform(uint32_t program, int32_t location, uint32_t type, int32_
     return hn_check_gl("%s: program %u, location %d, type 0x%04X, count %d", operation, program, location,
                        type, count);
 }
+
+int hn_program_uniform_read(uint32_t program, int32_t location, uint32_t type, int components, void *data) {
+    const char *operation = "hn_program_uniform_read";
+    if (hn_context_check(operation))
+        return -1;
+    enum { MOST = 16 }; /* GL writes a whole value, and asks nobody how much there is room for */
+    if (location < 0 || components < 1 || components > MOST)
+        return hn_fail("%s: location %d, %d components", operation, location, components);
+    GLfloat floats[MOST] = {0};
+    GLint integers[MOST] = {0};
+    GLuint unsigneds[MOST] = {0};
+    switch (type) {
+    case GL_FLOAT:
+    case GL_FLOAT_VEC2:
+    case GL_FLOAT_VEC3:
+    case GL_FLOAT_VEC4:
+    case GL_FLOAT_MAT2:
+    case GL_FLOAT_MAT3:
+    case GL_FLOAT_MAT4:
+    case GL_FLOAT_MAT2x3:
+    case GL_FLOAT_MAT2x4:
+    case GL_FLOAT_MAT3x2:
+    case GL_FLOAT_MAT3x4:
+    case GL_FLOAT_MAT4x2:
+    case GL_FLOAT_MAT4x3:
+        gl.GetUniformfv(program, location, floats);
+        memcpy(data, floats, (size_t)components * sizeof *floats);
+        break;
+    case GL_UNSIGNED_INT:
+    case GL_UNSIGNED_INT_VEC2:
+    case GL_UNSIGNED_INT_VEC3:
+    case GL_UNSIGNED_INT_VEC4:
+        gl.GetUniformuiv(program, location, unsigneds);
+        memcpy(data, unsigneds, (size_t)components * sizeof *unsigneds);
+        break;
+    default:
+        gl.GetUniformiv(program, location, integers);
+        memcpy(data, integers, (size_t)components * sizeof *integers);
+    }
+    return hn_check_gl("%s: program %u, location %d", operation, program, location);
+}

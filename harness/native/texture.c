@@ -1,4 +1,4 @@
-/* texture.c: 8-bit textures, and which sizes of image we take. */
+/* texture.c: textures, and which sizes of image we take. */
 #include "internal.h"
 
 int hn_image_check(const char *operation, int width, int height, size_t bytes_per_pixel) {
@@ -16,12 +16,44 @@ int hn_image_check(const char *operation, int width, int height, size_t bytes_pe
     return 0;
 }
 
-uint32_t hn_texture_create(int width, int height, const uint8_t *rgba, uint32_t min_filter,
-                           uint32_t mag_filter, uint32_t wrap_s, uint32_t wrap_t) {
-    const char *operation = "hn_texture_create";
-    if (hn_context_check(operation) || hn_image_check(operation, width, height, 4))
+/* How the texels of a format are given: 0 when it is none of ours. */
+static size_t texel_bytes(uint32_t format, GLenum *layout, GLenum *type) {
+    switch (format) {
+    case GL_RGBA8:
+        *layout = GL_RGBA;
+        *type = GL_UNSIGNED_BYTE;
+        return 4;
+    case GL_RGBA32F:
+        *layout = GL_RGBA;
+        *type = GL_FLOAT;
+        return 16;
+    case GL_RGBA32I:
+        *layout = GL_RGBA_INTEGER;
+        *type = GL_INT;
+        return 16;
+    case GL_RGBA32UI:
+        *layout = GL_RGBA_INTEGER;
+        *type = GL_UNSIGNED_INT;
+        return 16;
+    default:
         return 0;
-    if (!rgba) {
+    }
+}
+
+uint32_t hn_texture_create_as(uint32_t format, int width, int height, const void *texels, uint32_t min_filter,
+                              uint32_t mag_filter, uint32_t wrap_s, uint32_t wrap_t) {
+    const char *operation = "hn_texture_create";
+    GLenum layout = 0, type = 0;
+    size_t bytes = texel_bytes(format, &layout, &type);
+    if (hn_context_check(operation))
+        return 0;
+    if (bytes == 0) {
+        hn_fail("%s: no texture of format 0x%04X", operation, format);
+        return 0;
+    }
+    if (hn_image_check(operation, width, height, bytes))
+        return 0;
+    if (!texels) {
         hn_fail("%s: no pixels", operation);
         return 0;
     }
@@ -36,8 +68,9 @@ uint32_t hn_texture_create(int width, int height, const uint8_t *rgba, uint32_t 
     gl.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, (GLint)wrap_t);
     gl.BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     gl.PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
-    gl.GenerateMipmap(GL_TEXTURE_2D);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, (GLint)format, width, height, 0, layout, type, texels);
+    if (layout == GL_RGBA) /* integers have none */
+        gl.GenerateMipmap(GL_TEXTURE_2D);
     gl.BindTexture(GL_TEXTURE_2D, (GLuint)bound);
     if (hn_check_gl("%s: %d x %d, filters 0x%04X and 0x%04X, wraps 0x%04X and 0x%04X", operation, width,
                     height, min_filter, mag_filter, wrap_s, wrap_t)) {
@@ -45,6 +78,11 @@ uint32_t hn_texture_create(int width, int height, const uint8_t *rgba, uint32_t 
         return 0;
     }
     return texture;
+}
+
+uint32_t hn_texture_create(int width, int height, const uint8_t *rgba, uint32_t min_filter,
+                           uint32_t mag_filter, uint32_t wrap_s, uint32_t wrap_t) {
+    return hn_texture_create_as(GL_RGBA8, width, height, rgba, min_filter, mag_filter, wrap_s, wrap_t);
 }
 
 void hn_texture_delete(uint32_t texture) {

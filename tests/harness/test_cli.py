@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from harness import HarnessError, cli
-from harness.evaluation import MODES
+from harness.dialect import MODES
 
 
 def harness(*arguments, cwd=None):
@@ -155,7 +155,7 @@ def test_call_compares_all_modes(root, capsys):
         (["g", "k=nan"], "f.glsl:2: k is an int, got numbers of type float64 (nan among them); it is int g(int k)"),
         (
             ["f", "x=1", "--mode", "presice"],
-            "no mode 'presice'; did you mean precise? There are: as-written, precise",
+            "no mode 'presice'; did you mean precise? There are: as-written, precise, mediump, double",
         ),
     ],
 )

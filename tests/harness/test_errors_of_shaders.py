@@ -212,7 +212,7 @@ CALLS = {
     "uniform's type": ("gained", lambda f: f(1, gain="x"), "gain is a float, got numbers of type <U1"),
     "uniform of another": ("f", lambda f: f([1, 2, 3], 1, gain=1), "has no parameter gain and reads no such uniform"),
     "nothing comes back": ("nothing", lambda f: f(1), "void nothing(float x) yields nothing"),
-    "sampler": ("sampled", lambda f: f(1), "map is a sampler2D, which cannot be given as an array"),
+    "sampler": ("sampled", lambda f: f(1), "map is a sampler2D: a harness.Texture, got int"),
 }
 
 
@@ -308,7 +308,7 @@ EXACT = {
     ),
     "an unknown mode": (
         lambda s: s.f.with_mode("precice"),
-        "no mode 'precice'; did you mean precise? There are: as-written, precise",
+        "no mode 'precice'; did you mean precise? There are: as-written, precise, mediump, double",
     ),
 }
 
@@ -367,7 +367,7 @@ def test_overloads_are_listed_where_none_or_several_fit(called, call, message):
 
 
 def test_an_unknown_mode_lists_those_that_there_are(called):
-    assert "no mode 'exact'; there are: as-written, precise" in str(refusal(lambda: called.with_mode("exact")))
+    assert "no mode 'exact'; there are: as-written, precise, mediump, double" in str(refusal(lambda: called.with_mode("exact")))
 
 
 def test_a_wrong_call_leaves_the_function_usable(called):

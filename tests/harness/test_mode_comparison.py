@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from harness import CallError, GlslError, evaluation, function, mode_comparison
+from harness import CallError, GlslError, dialect, function, mode_comparison
 from harness.mode_comparison import ModeComparison
 
 TEXT = (
@@ -32,11 +32,11 @@ def test_there_is_a_result_for_each_mode_asked_for(made):
 
 
 def test_without_modes_there_are_all(made):
-    assert set(made.f.compare(x=1)) == set(evaluation.MODES)
+    assert set(made.f.compare(x=1)) == set(dialect.MODES)
 
 
 def test_every_mode_has_a_place_among_the_accurate():
-    assert set(evaluation.MODES) <= set(mode_comparison.ACCURACY)
+    assert set(dialect.MODES) <= set(mode_comparison.ACCURACY)
 
 
 def test_the_most_accurate_is_what_the_others_are_measured_against(made):

@@ -524,18 +524,58 @@ def test_the_driver_would_decide_otherwise(decided, place):
     np.testing.assert_array_equal(got, [1, 1])
 
 
-@pytest.mark.xfail(reason="a type that make_precise does not know", strict=True)
-@pytest.mark.parametrize(
-    "text",
-    [
-        "float id(float x) { return x; } vec2 id(vec2 x) { return x; } "
-        "float f(float a, float c) { return id((a + 1.0) + 2.0); }",
-        "float f(float a, float c) { vec2 v; int k = int(c > 0.0); v[k] = (a + 1.0) + 2.0; return v[k]; }",
-    ],
-    ids=["argument of an overload", "component by an index"],
-)
-def test_what_is_left_to_the_driver(on_llvmpipe, functions, text):
+#: place of an expression whose type only the compiler knows, or only a declaration -> text
+TYPED = {
+    "argument of an overload": "float id(float x) { return x; } vec2 id(vec2 x) { return x; } "
+    "float f(float a, float c) { return id(EXPR); }",
+    "of the other overload": "float y(float x) { return x; } float y(vec2 x) { return x.y; } "
+    "float f(float a, float c) { return y(vec2(c, EXPR)); }",
+    "one overload within another": "float id(float x) { return x; } vec2 id(vec2 x) { return x; } "
+    "float f(float a, float c) { return id(id(vec2(id(EXPR), c)).x); }",
+    "over several lines": "float id(float x) { return x; } vec2 id(vec2 x) { return x; } "
+    "float f(float a, float c) {\n return id(\n EXPR\n ) + 0.0 * id(id(vec2(c)).x); }",
+    "component by an index": "float f(float a, float c) { vec2 v; int k = int(c > 0.0); v[k] = EXPR; return v[k]; }",
+    "component of a parameter": "float g(vec3 v, int k, float a, float c) { v[k] = EXPR; return v[k]; } "
+    "float f(float a, float c) { return g(vec3(c), int(c > 0.0), a, c); }",
+    "component of a vector in an array": "float f(float a, float c) { vec2 v[3]; int k = int(c > 0.0); "
+    "v[k + 1][k] = EXPR; return v[k + 1][k]; }",
+    "component of a matrix": "float f(float a, float c) { mat3x2 m; int k = int(c > 0.0); m[k + 1][k] = EXPR; "
+    "return m[k + 1][k]; }",
+    "component of a member": "struct S { float x; vec4 v[2]; }; float f(float a, float c) { S s; int k = int(c > 0.0); "
+    "s.v[1][k] = EXPR; return s.v[1][k]; }",
+    "component of a global": "vec4 v; float f(float a, float c) { int k = int(c > 0.0); v[k] = EXPR; return v[k]; }",
+    "component without braces": "float f(float a, float c) { vec2 u = vec2(c), v; int k = int(c > 0.0); "
+    "if (k == 0) v[k] = EXPR; else v[k] = EXPR; return v[k]; }",
+}
+
+
+@pytest.mark.parametrize("place", TYPED)
+def test_a_value_whose_type_has_to_be_found_out(on_llvmpipe, functions, place):
+    text = TYPED[place].replace("EXPR", "(a + 1.0) + 2.0")
     assert_as_numpy(functions(text).f(A, C), lambda a, c: (a + ONE) + TWO, A, C)
+
+
+@pytest.mark.parametrize(
+    ("declared", "zero"),
+    [
+        ("const float Z = 0.0;", "Z"),
+        ("const float A = 1.0, Z = 0.0;", "Z"),
+        ("const highp float Z = 0.0;", "Z"),
+        ("const vec3 Z = vec3(1.0, 0.0, 2.0);", "Z.y"),
+        ("const vec2 Z = vec2(0.0);", "Z[1]"),
+        ("const float Y = 0.0; const vec2 Z = vec2(1.0, Y);", "Z.y"),
+    ],
+)
+def test_a_constant_zero_is_multiplied_with(functions, declared, zero):
+    x = np.float32([-1, 2, np.inf, np.nan])
+    got = functions(f"{declared} float f(float x) {{ return x * {zero}; }}").f(x)
+    assert_as_numpy(got, lambda x: x * np.float32(0), x)
+
+
+def test_a_parameter_may_have_the_name_of_a_constant(functions):
+    text = "const float Z = 0.0; float f(float Z) { return Z + 1.0; } float g(float x) { float Z = x; return Z; }"
+    assert functions(text).f(2) == 3
+    assert functions(text).g(2) == 2
 
 
 def test_an_argument_that_all_overloads_take_alike(functions):

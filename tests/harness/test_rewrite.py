@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from harness import glsl, native, rewrite
+from harness import glsl, native, precise, rewrite
 from harness.native import Stage
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -47,7 +47,7 @@ def test_the_corpus_is_there():
 
 def test_no_line_moves(text):
     assert rewrite.isolate(text).count("\n") == text.count("\n")
-    assert rewrite.make_precise(text).count("\n") == text.count("\n")
+    assert precise.make_precise(text).count("\n") == text.count("\n")
 
 
 def test_isolate_only_takes_away(text):
@@ -80,7 +80,7 @@ def with_zeros_alike(text: str) -> list[str]:
 
 def test_make_precise_only_adds(text):
     """All words of a line are there in their order; but `return E` has its `return` after E, and zeros get a name."""
-    for before, after in zip(text.split("\n"), rewrite.make_precise(text).split("\n"), strict=True):
+    for before, after in zip(text.split("\n"), precise.make_precise(text).split("\n"), strict=True):
         rest = iter(with_zeros_alike(after))
         assert all(word in rest for word in with_zeros_alike(before) if word != "return"), (before, after)
 
@@ -88,14 +88,14 @@ def test_make_precise_only_adds(text):
 def test_glslang_accepts_the_result(text):
     isolated = rewrite.isolate(text)
     native.glsl_tree(Stage.FRAGMENT, isolated)
-    native.glsl_tree(Stage.FRAGMENT, at_400(rewrite.make_precise(isolated)))
+    native.glsl_tree(Stage.FRAGMENT, at_400(precise.make_precise(isolated)))
 
 
 def test_the_driver_accepts_the_result(text):
     isolated = rewrite.isolate(text)
     native.open_context()
     native.Program(native.evaluate_vertex(), isolated + MAIN)
-    native.Program(native.evaluate_vertex(), at_400(rewrite.make_precise(isolated) + MAIN))
+    native.Program(native.evaluate_vertex(), at_400(precise.make_precise(isolated) + MAIN))
 
 
 # ---- isolate ---------------------------------------------------------------------------------------------------------
@@ -193,7 +193,7 @@ def test_the_types_that_functions_return():
     ],
 )
 def test_what_computes_nothing_is_not_declared_precise(declaration):
-    assert "precise" not in rewrite.make_precise(declaration)
+    assert "precise" not in precise.make_precise(declaration)
 
 
 @pytest.mark.parametrize(
@@ -212,4 +212,46 @@ def test_what_computes_nothing_is_not_declared_precise(declaration):
     ],
 )
 def test_what_holds_numbers_is_declared_precise(declaration, expected):
-    assert words(expected) == words(rewrite.make_precise(declaration))[3 + 1 :]  # after: uniform float hn_zero ;
+    assert words(expected) == words(precise.make_precise(declaration))[3 + 1 :]  # after: uniform float hn_zero ;
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("float f() { float x; return x; }", False),
+        ("const float x = 1.0; uniform vec2 y; uniform float z = 1.0; precision highp float;", False),
+        ("struct S { float x; }; uniform struct T { float y; } t;", False),
+        ("float f(float x); vec2 g(in vec2, S s);", False),
+        ("layout(std140) uniform B { float x; } b;", False),
+        ("#define x float y;", False),
+        ("float x;", True),
+        ("float f(); float x = 1.0;", True),
+        ("struct S { float x; } s;", True),
+        ("struct S { float x; }; S s[2];", True),
+        ("vec2 x = vec2(1.0);", True),
+        ("shared float x;", True),
+    ],
+)
+def test_variables_that_can_change_are_found(text, found):
+    assert rewrite.has_variables(f"#version 330\n{text}\n") is found
+
+
+@pytest.mark.parametrize(
+    ("text", "without", "names"),
+    [
+        ("uniform float x = 1.0;", "uniform float x ;", ["x"]),
+        ("uniform float x, y = 1.0, z;", "uniform float x, y , z;", ["y"]),
+        ("uniform vec2 x = vec2(1.0, 2.0), y = x;", "uniform vec2 x , y ;", ["x", "y"]),
+        ("uniform float x[2] = float[2](1.0, 2.0);", "uniform float x[2] ;", ["x"]),
+        ("uniform float[2] x = float[](1.0, 2.0);", "uniform float[2] x ;", ["x"]),
+        ("uniform float x\n = 1.0\n;", "uniform float x\n\n;", ["x"]),
+        ("uniform struct S { float a; } s = S(1.0);", "uniform struct S { float a; } s ;", ["s"]),
+        ("uniform B { float x; }; float y = 1.0;", "uniform B { float x; }; float y = 1.0;", []),
+        ("float f() { float x = 1.0; return x; }", "float f() { float x = 1.0; return x; }", []),
+    ],
+)
+def test_initialisers_of_uniforms_are_taken_out(text, without, names):
+    got, found = rewrite.uniform_initialisers(text)
+    assert words(got) == words(without)
+    assert found == names
+    assert got.count("\n") == text.count("\n")

@@ -110,8 +110,8 @@ def test_uniforms_of_two_functions_are_their_own(uniforms):
         ("right", [1, 2, 3], {"m": np.ones((2, 3, 3))}, "uniform m is one mat3, not an array of them"),
         ("gained", 1, {"gain": 1, "offset": [1, 2, 3]}, "has no parameter offset and reads no such uniform"),
         ("if_on", 1, {"on": 1}, "on is a bool, got numbers of type int64"),
-        ("sampled", [0, 0], {"map": 1}, "sampled reads the uniform sampler2D map, which cannot be given"),
-        ("sampled", [0, 0], {}, "sampled reads the uniform sampler2D map, which cannot be given"),
+        ("sampled", [0, 0], {"map": 1}, "map is a sampler2D: give it a harness.Texture, got int"),
+        ("sampled", [0, 0], {}, "sampled reads the uniform sampler2D map: give it a Texture by its name"),
         ("blocked", 1, {}, "of_block of a uniform block, which cannot be given"),
     ],
 )

@@ -53,6 +53,20 @@ void test_texture(void) {
     CHECK(sample(mipmapped, 0.25f, 0.25f, 0.5f) == 45);
     hn_texture_delete(mipmapped);
 
+    /* Other formats: floats beyond 0 ... 1 stay, and a level of theirs is a mean too. */
+    const float floats[16] = {-1, 0, 0, 1, 3, 0, 0, 1, -1, 0, 0, 1, 3, 0, 0, 1};
+    uint32_t of_floats = hn_texture_create_as(GL_RGBA32F, 2, 2, floats, GL_LINEAR_MIPMAP_LINEAR, GL_NEAREST,
+                                              GL_REPEAT, GL_REPEAT);
+    CHECK(sample(of_floats, 0.25f, 0.25f, 0) == -255 && sample(of_floats, 0.75f, 0.25f, 0) == 765);
+    CHECK(sample(of_floats, 0.25f, 0.25f, 1) == 255);
+    hn_texture_delete(of_floats);
+    uint32_t of_ints =
+        hn_texture_create_as(GL_RGBA32I, 2, 2, floats, GL_NEAREST, GL_NEAREST, GL_REPEAT, GL_REPEAT);
+    CHECK(of_ints != 0);
+    hn_texture_delete(of_ints);
+    CHECK_FAILS(hn_texture_create_as(GL_R8, 2, 2, floats, GL_NEAREST, GL_NEAREST, GL_REPEAT, GL_REPEAT) == 0,
+                "no texture of format 0x8229");
+
     /* A width of any kind: rows are 4-byte aligned whatever it is. */
     const uint8_t three[12] = {10, 0, 0, 255, 20, 0, 0, 255, 30, 0, 0, 255};
     uint32_t odd = hn_texture_create(3, 1, three, GL_NEAREST, GL_NEAREST, GL_REPEAT, GL_REPEAT);

@@ -65,7 +65,7 @@ static void test_compute(void) {
             memory[i] = -1;
         const hn_input input = {"x", x, GL_FLOAT, 3, N};
         const hn_output output = {memory + GUARD + shift, 2};
-        CHECK(hn_compute(program, &input, 1, &output, 1, N) == 0);
+        CHECK(hn_compute(program, &input, 1, &output, 1, N, 1) == 0);
         size_t wrong = 0;
         for (int i = 0; i < N; ++i)
             wrong += output.data[2 * i] != x[3 * i + 2] || output.data[2 * i + 1] != x[3 * i];
@@ -75,16 +75,45 @@ static void test_compute(void) {
     }
     const hn_input input = {"x", x, GL_FLOAT, 3, N};
     const hn_output output = {memory, 2}, no_components = {memory, 0};
-    CHECK(hn_compute(program, &input, 1, &output, 1, 0) == 0);
+    CHECK(hn_compute(program, &input, 1, &output, 1, 0, 1) == 0);
     CHECK(hn_compute_limit(4) > 1000000 && hn_compute_limit(4) % 4 == 0);
     CHECK(hn_compute_limit(1) >= hn_compute_limit(4));
-    CHECK_FAILS(hn_compute(program, &input, 1, &output, 1, (size_t)1 << 40) == -1, "at a time");
-    CHECK_FAILS(hn_compute(program, &input, 1, &no_components, 1, N) == -1, "0 components");
-    CHECK_FAILS(hn_compute(9999, &input, 1, &output, 1, N) == -1, "GL_INVALID_VALUE");
+    CHECK_FAILS(hn_compute(program, &input, 1, &output, 1, (size_t)1 << 40, 1) == -1, "at a time");
+    CHECK_FAILS(hn_compute(program, &input, 1, &no_components, 1, N, 1) == -1, "0 components");
+    CHECK_FAILS(hn_compute(9999, &input, 1, &output, 1, N, 1) == -1, "GL_INVALID_VALUE");
+    CHECK_FAILS(hn_compute(program, &input, 1, &output, 1, N, 0) == -1, "0 elements an invocation");
     CHECK_FAILS(hn_program_create_compute("#version 430\nvoid main() { x; }\n") == 0, "compute: ");
     CHECK_FAILS(hn_program_create_compute(NULL) == 0, "no text");
     free(x);
     free(memory);
+    hn_program_delete(program);
+}
+
+/* An invocation evaluates several elements; an element has more numbers than a texel. */
+static void test_compute_wide(void) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             "#version 430\n%suniform int hn_count;\nuniform samplerBuffer x;\n"
+             "layout(std430, binding = 0) writeonly buffer A { vec4 a[]; };\n"
+             "void main() { int i = int(gl_GlobalInvocationID.x) * 2; if (i >= hn_count) return;\n"
+             "for (int k = 0; k < 4; ++k) a[2 * i + k] = texelFetch(x, 2 * i + k) + float(k); }\n",
+             hn_compute_head());
+    uint32_t program = hn_program_create_compute(text);
+    CHECK(program != 0);
+    enum { N = 1002, SIZE = 8 };
+    float *x = malloc(N * SIZE * sizeof *x), *y = malloc((N * SIZE + 1) * sizeof *y);
+    for (int i = 0; i < N * SIZE; ++i)
+        x[i] = (float)i;
+    y[N * SIZE] = -1;
+    const hn_input input = {"x", x, GL_FLOAT, 4, N * SIZE / 4};
+    const hn_output output = {y, SIZE};
+    CHECK(hn_compute(program, &input, 1, &output, 1, N, 2) == 0);
+    size_t wrong = y[N * SIZE] >= 0;
+    for (int i = 0; i < N * SIZE; ++i)
+        wrong += y[i] != (float)(i + i / 4 % 4);
+    CHECK(wrong == 0);
+    free(x);
+    free(y);
     hn_program_delete(program);
 }
 
@@ -110,5 +139,6 @@ static void test_failures(void) {
 void test_evaluate(void) {
     test_elements();
     test_compute();
+    test_compute_wide();
     test_failures();
 }

@@ -139,6 +139,17 @@ static void test_uniform_types(void) {
         int is_float = strchr("fvm", cases[i].name[0]) != NULL;
         CHECK(hn_program_uniform(program, u.location, u.type, 1, is_float ? (void *)floats : (void *)ints) ==
               0);
+        int32_t read[17];
+        memset(read, 0x55, sizeof read);
+        int n = (int)(cases[i].expected > 1 || cases[i].type == GL_FLOAT ? cases[i].expected : 1);
+        CHECK(hn_program_uniform_read(program, u.location, u.type, n, read) == 0);
+        int32_t first = 1; /* a bool is 1 when it is true; the rest is as it was set */
+        CHECK(memcmp(read,
+                     is_float ? (void *)floats
+                     : n > 1  ? (void *)ints
+                              : (void *)&first,
+                     (size_t)n * 4) == 0 &&
+              read[n] == 0x55555555);
         float rgba[4] = {0};
         CHECK(draw_pixel(program, rgba) == 0);
         CHECK(rgba[0] == cases[i].expected && rgba[1] == cases[i].expected_column);
@@ -164,8 +175,25 @@ static void test_uniform_arrays_and_failures(void) {
     CHECK_FAILS(hn_program_uniform(program, u.location, u.type, 0, values) == -1, "no data");
     CHECK_FAILS(hn_program_uniform(program, u.location, u.type, 1, NULL) == -1, "no data");
     CHECK_FAILS(hn_program_uniform(9999, 0, GL_FLOAT, 1, values) == -1, "program 9999");
+    float read[16];
+    CHECK(hn_program_uniform_read(program, u.location + 1, u.type, 2, read) == 0 && read[1] == 4);
+    CHECK_FAILS(hn_program_uniform_read(program, -1, u.type, 2, read) == -1, "location -1");
+    CHECK_FAILS(hn_program_uniform_read(program, u.location, u.type, 17, read) == -1, "17 components");
+    CHECK_FAILS(hn_program_uniform_read(program, u.location + 77, u.type, 2, read) == -1, "GL_INVALID");
     /* None of these changed anything. */
     CHECK(draw_pixel(program, rgba) == 0 && memcmp(rgba, values, sizeof values) == 0);
+    hn_program_delete(program);
+}
+
+/* A uniform that is not set has the value that the text gives it. */
+static void test_uniform_initial(void) {
+    uint32_t program =
+        hn_program_create(POSITION_VERTEX, FRAGMENT_HEAD
+                          "uniform uint u = 4000000000u;\nvoid main() { color = vec4(float(u >> 16)); }\n");
+    hn_variable u;
+    uint32_t value = 0;
+    CHECK(hn_program_uniforms(program, &u, 1) == 1);
+    CHECK(hn_program_uniform_read(program, u.location, u.type, 1, &value) == 0 && value == 4000000000u);
     hn_program_delete(program);
 }
 
@@ -175,4 +203,5 @@ void test_program(void) {
     test_long_name();
     test_uniform_types();
     test_uniform_arrays_and_failures();
+    test_uniform_initial();
 }
