@@ -16,6 +16,7 @@ import numpy as np
 from . import glsl, native, rewrite
 from .errors import CallError
 from .evaluation import MODES, Evaluation, Leaf, leaves
+from .interpretation import Interpretation
 from .native import Stage, gl_enums
 from .signature import DTYPES, Array, Numeric, Parameter, Signature, Struct, Type, signatures
 
@@ -29,7 +30,8 @@ def shader(
     """The functions of a GLSL file, callable by name.
 
     ``defines`` are macros, ``include_dirs`` the folders where includes are looked for, before the file's own. ``mode``
-    is "as-written" or "precise" (the driver may not rewrite the arithmetic). GlslError when it does not compile.
+    is "as-written", "precise" (the driver may not rewrite the arithmetic) or "double" (the same source in float64, by
+    our interpreter; results are float64). GlslError when it does not compile.
     """
     path = Path(path)
     macros = {name: str(text) for name, text in (defines or {}).items()}
@@ -106,7 +108,7 @@ class Function:
         """
         signature, arguments, rest = self._overload(args, kwargs)
         if signature not in self._compiled:
-            self._compiled[signature] = Evaluation(self._source, signature, self._mode)
+            self._compiled[signature] = _engine(self._source, signature, self._mode)
         evaluation = self._compiled[signature]
         self._set_uniforms(evaluation, rest)
         return _evaluate(evaluation, arguments)
@@ -158,6 +160,11 @@ class Function:
             if value.shape != shape:
                 raise CallError(f"uniform {name} is one {kind}, not an array of them", *where)
             evaluation.set_uniform(name, value.astype(_GL_DTYPES[number.base], copy=False))
+
+
+def _engine(source: glsl.Source, signature: Signature, mode: str) -> Evaluation | Interpretation:
+    """What evaluates a function in a mode: the driver, or in double our interpreter."""
+    return Interpretation(source, signature, "float64") if mode == "double" else Evaluation(source, signature, mode)
 
 
 _UNIFORM_TYPES = {

@@ -96,7 +96,7 @@ def _parser() -> argparse.ArgumentParser:
     call.add_argument(
         "-I", "--include", action="append", default=[], metavar="DIR", help="where includes are looked for"
     )
-    call.add_argument("--mode", default="as-written", help="as-written (default) or precise")
+    call.add_argument("--mode", default="as-written", help="as-written (default), precise or double")
     return parser
 
 

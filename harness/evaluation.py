@@ -24,6 +24,7 @@ OUTPUTS_MAX = 8  # the most that GL 3.3 promises
 MODES = {
     "as-written": "the source as it stands: the driver may rewrite its arithmetic",
     "precise": "every operation as written, in the order written",
+    "double": "every operation as written, in float64, by our interpreter instead of the driver",
 }
 VERSION = 330  # the first that the test fragment can be written in
 PRECISE_VERSION = 400  # the first with `precise`
