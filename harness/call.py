@@ -16,9 +16,10 @@ import numpy as np
 from . import glsl, native, rewrite
 from .errors import CallError
 from .evaluation import MODES, Evaluation, Leaf, leaves
-from .interpretation import Interpretation
+from .interpretation import PRECISIONS, Interpretation
 from .native import Stage, gl_enums
 from .signature import DTYPES, Array, Numeric, Parameter, Signature, Struct, Type, signatures
+from .trace import Trace, Tracing
 
 
 def shader(
@@ -111,7 +112,20 @@ class Function:
             self._compiled[signature] = _engine(self._source, signature, self._mode)
         evaluation = self._compiled[signature]
         self._set_uniforms(evaluation, rest)
-        return _evaluate(evaluation, arguments)
+        return _evaluate(evaluation, arguments)[0]
+
+    def trace(self, *args, precision: str = "float32", **kwargs) -> Trace:
+        """Evaluates the function as a call does, and tells every float that it computes on the way.
+
+        Our interpreter does it, not the driver: in strict IEEE arithmetic of ``precision``, "float32", "float64" or
+        "float16". ``Trace.first_non_finite()`` finds where a NaN begins that the result hides.
+        """
+        if precision not in PRECISIONS:
+            raise CallError(f"no precision {precision!r}; there are: {', '.join(PRECISIONS)}")
+        signature, arguments, rest = self._overload(args, kwargs)
+        tracing = Tracing(self._source, signature, precision)
+        self._set_uniforms(tracing, rest)
+        return tracing.trace(*_evaluate(tracing, arguments))
 
     def _overload(self, args: tuple, kwargs: dict) -> tuple[Signature, dict[str, list[np.ndarray]], dict]:
         """The overload that the arguments fit best, the numbers of its parameters, and the names left over."""
@@ -265,8 +279,8 @@ def _array(number: Numeric, shape: tuple[int, ...], value: Any, name: str, kind:
     return array
 
 
-def _evaluate(evaluation: Evaluation, arguments: dict[str, list[np.ndarray]]):
-    """Broadcasts, flattens, evaluates, and puts the results in shape."""
+def _evaluate(evaluation: Evaluation | Interpretation | Tracing, arguments: dict[str, list[np.ndarray]]):
+    """Broadcasts, flattens, evaluates, and puts the results in shape: the results, and the shape of the batch."""
     parts = [
         (f"{buffer}", leaf, array, array.shape[: array.ndim - len(leaf.type.shape)])
         for name, buffers in evaluation.inputs
@@ -296,8 +310,9 @@ def _evaluate(evaluation: Evaluation, arguments: dict[str, list[np.ndarray]]):
         for (_, kind), values in zip(evaluation.signature.outputs, outputs, strict=True)
     ]
     if len(shaped) == 1:
-        return shaped[0]
-    return _tuple_type(evaluation.signature.name, tuple(n for n, _ in evaluation.signature.outputs))(*shaped)
+        return shaped[0], batch
+    names = tuple(n for n, _ in evaluation.signature.outputs)
+    return _tuple_type(evaluation.signature.name, names)(*shaped), batch
 
 
 def _shaped(kind: Type, values, batch: tuple[int, ...]):

@@ -19,7 +19,7 @@ from .interpreter_memory import Cell, Numbers, Place
 from .interpreter_ops import Value, stacked
 from .interpreter_uniforms import Uniform
 from .native import Stage, gl_enums
-from .signature import DTYPES, VOID, Array, Numeric, Parameter, Signature, Struct
+from .signature import DTYPES, VOID, Array, Parameter, Signature, Struct
 
 #: name of an arithmetic -> (numpy's type of its floats, what its versions of functions are called)
 PRECISIONS = {
@@ -75,8 +75,8 @@ class Interpretation:
         self._numbers = Numbers(floating)
         values = _literal_values(module, found, floating)
         self._program = Program(module, self._numbers, values, source.origin, label, names)
-        self._function = _definition(module, called)
-        self._places = interpreter_uniforms.read_by(module, self._function)
+        self.function = _definition(module, called)
+        self._places = interpreter_uniforms.read_by(module, self.function)
         #: those that the function reads, as a driver describes them
         self.uniforms = {name: _described(uniform) for name, uniform in self._places.items()}
         self._buffers = {p: [buffer for buffer, _ in buffers] for p, buffers in self.inputs}
@@ -122,10 +122,10 @@ class Interpretation:
             self._program.initialize()
             cells: dict[str, Cell] = {}
             arguments = []
-            for parameter, (_, kind, _) in zip(self.signature.parameters, self._function.parameters, strict=True):
+            for parameter, (_, kind, _) in zip(self.signature.parameters, self.function.parameters, strict=True):
                 cell = cells[parameter.name] = Cell(self._argument(parameter, kind, arrays, chunk))
                 arguments.append(cell if kind.kind == "pointer" else cell.value)
-            result = self._program.call(self._function.id, arguments, None, run)
+            result = self._program.call(self.function.id, arguments, None, run)
             values = [] if self.signature.result == VOID else [result]
             values += [cells[p.name].value for p in self.signature.parameters if p.direction != "in"]
             return [

@@ -1,10 +1,10 @@
 """Runs SPIR-V functions over numpy batches, all lanes at once, in a number system of choice.
 
-Control flow: a block is run for the lanes that arrive at it, and of the blocks that lanes wait at the first in the module is
-run next. SPIR-V puts what a construct contains before what follows it, so lanes that part meet again where the construct
-ends, and a loop's go round until the last has left. Values are computed in all lanes, whether they take part or not; only
-stores, returned values and merges ask which do. Written for what glslang makes of GLSL without optimisation: an unnamed
-value is not used beyond the statement that it belongs to.
+Control flow: a block is run for the lanes that arrive at it, and of the blocks that lanes wait at the first in the
+module is run next. SPIR-V puts what a construct contains before what follows it, so lanes that part meet again where
+the construct ends, and a loop's go round until the last has left. Values are computed in all lanes, whether they take
+part or not; only stores, returned values and merges ask which do. Written for what glslang makes of GLSL without
+optimisation: an unnamed value is not used beyond the statement that it belongs to.
 """
 
 from __future__ import annotations
@@ -44,11 +44,15 @@ class Frame:
         self.mask, self.run = mask, run
 
 
+def _ignored(*recorded) -> None:
+    """The recorder of a run that nobody follows."""
+
+
 class Run:
     """One evaluation of a batch of ``lanes`` elements. ``recorder`` is told of every value that steps record."""
 
     def __init__(self, program: Program, lanes: int, recorder: Callable | None = None):
-        self.program, self.lanes, self.recorder = program, lanes, recorder
+        self.program, self.lanes, self.recorder = program, lanes, recorder or _ignored
         self.jumps = 0
         self.killed: Mask = None  # the lanes that met a discard, None: none
 
@@ -146,7 +150,7 @@ class _Code:
             for v in function.variables
         ]
         names = program.names_of(function)
-        self.entry = names.entry() if names else ()
+        self.entry = names.record_parameters() if names else ()
         self.blocks = []
         for block in function.blocks:
             steps = [compile_step(program, instruction, names) for instruction in block.instructions]
@@ -156,9 +160,9 @@ class _Code:
 class Program:
     """The functions of a module, compiled as they are called.
 
-    ``numbers`` says what its floats are, ``values`` gives the values of uniforms by their ids, ``origin`` maps a line to
-    (file, line), ``label`` names the arithmetic in messages. ``names`` makes, for a function, what says which of its
-    values are recorded and how they are called; None: nothing is.
+    ``numbers`` says what its floats are, ``literals`` the values of the uniforms that are literals, by their ids,
+    ``origin`` maps a line to (file, line), ``label`` names the arithmetic in messages. ``names`` makes, of a program
+    and a function, what says which of its values are recorded and how they are called; None: nothing is.
     """
 
     def __init__(
@@ -204,9 +208,8 @@ class Program:
         for identifier, start in code.variables:
             registers[identifier] = Cell(start)
         frame = Frame(mask, run)
-        if run.recorder:
-            for step in code.entry:
-                step(registers, frame)
+        for step in code.entry:
+            step(registers, frame)
         return _follow(code, registers, frame)
 
 

@@ -1,11 +1,13 @@
 """The built-in functions of GLSL (SPIR-V's set GLSL.std.450) over numpy batches; values as in ``interpreter_ops``.
 
-Each follows the formula of the GLSL specification (4.60, chapter 8), operation by operation, each rounded. Transcendental
-functions are computed in float64 and rounded; in float64 they are numpy's.
+Each follows the formula of the GLSL specification (4.60, chapter 8), operation by operation, each rounded.
+Transcendental functions are computed in float64 and rounded; in float64 they are numpy's.
 
-NaN: min, max and clamp give the operand that is a number, as IEEE 754's minNum and maxNum; comparisons with NaN are false, so
-that step(edge, NaN) is 1. round() takes ties to even. fma() rounds twice, as the driver's does. pow(x, y) is NaN for x < 0,
-where GLSL leaves it open and processors have NaN; otherwise it is IEEE's, with pow(0, 0) = 1.
+What GLSL leaves open: inversesqrt(x) is 1 / sqrt(x), normalize(v) is v inversesqrt(dot(v, v)) and fma() rounds twice,
+all as Mesa has them, so that what has no transcendental function in it agrees with the driver to the bit. min, max and
+clamp give the operand that is a number, as IEEE 754's minNum and maxNum; comparisons with NaN are false, so that
+step(edge, NaN) is 1; sign(NaN) is NaN. round() takes ties to even. pow(x, y) is NaN for x < 0, as on GPUs; otherwise
+it is IEEE's, with pow(0, 0) = 1.
 """
 
 from __future__ import annotations
@@ -26,7 +28,7 @@ def _fract(x: np.ndarray) -> np.ndarray:
 
 
 def _inverse_sqrt(x: np.ndarray) -> np.ndarray:
-    return wide(lambda v: 1 / np.sqrt(v))(x)
+    return _constant(1, x) / np.sqrt(x)
 
 
 def _pow(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -63,7 +65,7 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def _normalize(x: np.ndarray) -> np.ndarray:
-    return x / _length(x)
+    return x * _inverse_sqrt(_product(x, x))
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -1,11 +1,12 @@
 """SPIR-V's arithmetic, comparisons, conversions and bit operations over numpy batches.
 
-A value holds its lanes, the elements of the batch, in the last dimension: a scalar (n,), a vector (components, n), a matrix
-(columns, rows, n), an array one dimension more in front. What all lanes share has n = 1, and broadcasts. Every operation is
-rounded once, to nearest even, to the type of its operands; nothing is contracted or reordered; denormals are kept.
+A value holds its lanes, the elements of the batch, in the last dimension: a scalar (n,), a vector (components, n), a
+matrix (columns, rows, n), an array one dimension more in front. What all lanes share has n = 1, and broadcasts. Every
+operation is rounded once, to nearest even, to the type of its operands; nothing is contracted or reordered; denormals
+are kept.
 
-Where GLSL leaves the result open: division of integers by zero gives all ones, shifts count modulo 32, % of integers takes the
-sign of the divisor, and a float beyond an integer type becomes its nearest value, NaN 0.
+Where GLSL leaves the result open: division of integers by zero gives all ones, shifts count modulo 32, % of integers
+takes the sign of the divisor, and a float beyond an integer type becomes its nearest value, NaN 0.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ Value = np.ndarray | list  # a list for structures and for arrays of them
 
 
 def wide(function: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
-    """A function computed in float64 and rounded to the type of its arguments: rounded right in all but rare near-ties."""
+    """A function computed in float64 and rounded to the type of its arguments: right in all but rare near-ties."""
 
     def rounded(*values: np.ndarray) -> np.ndarray:
         if values[0].dtype == np.float64:
@@ -28,14 +29,14 @@ def wide(function: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
     return rounded
 
 
-# ---- Vectors and matrices ----------------------------------------------------------------------------------------------
+# ---- Vectors and matrices --------------------------------------------------------------------------------------------
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """a[0] b[0] + a[1] b[1] + ..., from the first on."""
+    """The sum of the products of components, added from the last on: GLSL leaves the order open, and this is Mesa's."""
     products = a * b
-    total = products[0]
-    for product in products[1:]:
+    total = products[-1]
+    for product in products[-2::-1]:
         total = total + product
     return total
 
@@ -64,7 +65,7 @@ def transpose(m: np.ndarray) -> np.ndarray:
     return m.swapaxes(0, 1)
 
 
-# ---- Integers ------------------------------------------------------------------------------------------------------------
+# ---- Integers --------------------------------------------------------------------------------------------------------
 
 
 def _u(a: np.ndarray) -> np.ndarray:

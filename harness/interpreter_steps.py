@@ -1,4 +1,4 @@
-"""Makes of each SPIR-V instruction a step: a Python function that takes the registers and the frame, and leaves its result.
+"""Makes of each SPIR-V instruction a step: a Python function that takes the registers and leaves its result in them.
 
 ``registers`` are values, cells and places by the ids of SPIR-V.
 """
@@ -73,28 +73,15 @@ def composed(kind: Type, parts: list[Value]) -> Value:
 def compile_step(program: Program, i: Instruction, names) -> Step | None:
     """The step of an instruction; None where it has none."""
     if i.opcode in _NO_STEP:
-        return _recording_return(i, names) if i.opcode == spirv.RETURN_VALUE and names else None
+        return names.record(i) if names and i.opcode == spirv.RETURN_VALUE else None
     step = _compiled(program, i)
-    site = names.site(i) if names else None
-    if site is None:
+    record = names.record(i) if names else None
+    if record is None:
         return step
-    name, line, source, inputs = site
 
     def recorded(registers: list, frame: Frame) -> None:
         step(registers, frame)
-        frame.run.recorder(name, line, registers[source], frame.mask, [registers[k] for k in inputs])
-
-    return recorded
-
-
-def _recording_return(i: Instruction, names) -> Step | None:
-    site = names.site(i)
-    if site is None:
-        return None
-    name, line, source, inputs = site
-
-    def recorded(registers: list, frame: Frame) -> None:
-        frame.run.recorder(name, line, registers[source], frame.mask, [registers[k] for k in inputs])
+        record(registers, frame)
 
     return recorded
 

@@ -1,8 +1,8 @@
 """Takes the float literals out of a preprocessed GLSL text, so that they reach an interpreter with all their digits.
 
-The compiler folds constant expressions and rounds what remains to float32: 3.14159265358979 becomes 3.1415927, and 1.0 / 2.4
-a single number. Each literal is therefore made a uniform of its own, whose value is the literal's text; constant
-expressions of floats are then computed like all others, in the arithmetic of whoever evaluates them.
+The compiler folds constant expressions and rounds what remains to float32: 3.14159265358979 becomes 3.1415927, and
+1.0 / 2.4 a single number. Each literal is therefore made a uniform of its own, whose value is the literal's text;
+constant expressions of floats are then computed like all others, in the arithmetic of whoever evaluates them.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Reads a SPIR-V module into plain dataclasses: types, constants, global variables, functions, names and lines.
 
-Khronos, SPIR-V Specification 1.0: the layout of section 2, the opcodes of section 3. Only what glslang writes for GLSL is
-named; any other instruction is kept with its number.
+Khronos, SPIR-V Specification 1.0: the layout of section 2, the opcodes of section 3. Only what glslang writes for GLSL
+is named; any other instruction is kept with its number.
 """
 
 from __future__ import annotations
@@ -96,7 +96,7 @@ class Instruction:
 
 @dataclass
 class Block:
-    """Instructions from a label to a branch or return, both with it; ``loop`` is the line of a loop that begins here."""
+    """Instructions from a label to a branch or return; ``loop`` is the line of a loop that begins here."""
 
     label: int
     instructions: list[Instruction] = field(default_factory=list)
