@@ -1,4 +1,4 @@
-"""Every float that a GLSL function computes on its way to the result: finds where a NaN begins that the result hides."""
+"""Every float that a GLSL function computes on the way to its result: finds where a hidden NaN begins."""
 
 from __future__ import annotations
 

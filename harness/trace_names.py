@@ -1,8 +1,8 @@
 """What of an interpreted function is recorded in a trace, and what it is called there.
 
-Recorded is what makes or keeps a float: each operation under its expression (``NoH * NoH``), unless the value goes straight
-into a variable or is returned; each assignment under the variable's name, ``m.albedo`` or ``v.x``; parameters under theirs;
-what a function returns under ``D_GGX()``.
+Recorded is what makes or keeps a float: each operation under its expression (``NoH * NoH``), unless the value goes
+straight into a variable or is returned; each assignment under the variable's name, ``m.albedo`` or ``v.x``; parameters
+under theirs; what a function returns under ``D_GGX()``.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ from __future__ import annotations
 import re
 from collections import Counter
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from . import literals, spirv
 from .interpreter_builtins import BUILTINS
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
 _LONGEST = 48  # characters of an expression
 _SELECT, _TRANSPOSE = 169, 84
-_CONVERTED = (111, 112, 115)
+_FROM_INTEGER, _FLOAT_TO_FLOAT = (111, 112), 115
 _COMPONENTS = "xyzw"
 #: how strongly the operators of GLSL bind; everything else binds more
 _BINDING = {"*": 5, "/": 5, "%": 5, "+": 4, "-": 4, "<<": 3, ">>": 3}
@@ -38,19 +40,23 @@ class Names:
         self._made = {i.result: i for i in instructions if i.result}
         self._uses = Counter(operand for i in instructions for operand in set(_values(i)))
         self._passed = {operand for i in instructions if i.opcode == spirv.CALL for operand in i.operands[1:]}
-        self._kept = {k for i in instructions for k in self._keeps(i)}
         variables = [*program.module.variables.values(), *function.variables]
         self._variables = {v.id: (v.name, v.type) for v in variables}
         self._variables |= {
             identifier: (name, kind.element if kind.kind == "pointer" else kind)
             for identifier, kind, name in function.parameters
         }
+        self._kept = {k for i in instructions for k in self._keeps(i)}
 
     def _keeps(self, i: Instruction) -> tuple[int, ...]:
         """The value that an assignment or a return records in place of the operation that made it."""
-        if i.opcode == spirv.STORE and i.operands[0] not in self._passed:
+        if i.opcode == spirv.STORE and self._is_named(i.operands[0]):
             return (i.operands[1],)
         return (i.operands[0],) if i.opcode == spirv.RETURN_VALUE else ()
+
+    def _is_named(self, pointer: int) -> bool:
+        """Whether an assignment is the user's: not to a copy of an argument, nor to what holds the value of a ?:."""
+        return pointer not in self._passed and (pointer not in self._variables or self._variables[pointer][0] != "")
 
     def record_parameters(self) -> tuple[Step, ...]:
         """Steps that record the parameters of a call."""
@@ -75,7 +81,7 @@ class Names:
         """A step that records what an instruction leaves; None where that is nothing to be recorded."""
         if i.opcode == spirv.STORE:
             pointer, source = i.operands
-            if pointer in self._passed:
+            if not self._is_named(pointer):
                 return None
             name, kind = self._text(pointer), self._held(pointer)
         elif i.opcode == spirv.RETURN_VALUE:
@@ -98,7 +104,9 @@ class Names:
 
     def _computes(self, i: Instruction) -> bool:
         """Whether an instruction can make what is not finite of what is."""
-        if i.opcode == spirv.EXT_INST or i.opcode in _CONVERTED:
+        if i.opcode in _FROM_INTEGER:
+            return self._program.numbers.floating == np.float16  # the largest float16 is 65504
+        if i.opcode in (spirv.EXT_INST, _FLOAT_TO_FLOAT):
             return True
         return i.opcode in OPERATIONS and i.opcode not in (_SELECT, _TRANSPOSE)
 
@@ -116,7 +124,7 @@ class Names:
             name = self._variables[identifier][0]
             if name.startswith(literals.PREFIX):
                 return str(self._program.literals[identifier][0])
-            return name
+            return name or "..."
         if identifier in self._program.module.constants:
             value = self._program.template[identifier]
             return f"{value.ravel()[0]:g}" if not isinstance(value, list) and value.size == 1 else "const"
