@@ -30,22 +30,23 @@ PRECISIONS = {
 #: elements of the batch that are computed at once: few enough for the cache, many enough to make Python's share small
 LANES = 8192
 
-_MAIN = "\nvoid main() {}\n"
+#: a bool that is false: what it guards is compiled, for it is called, but not run
+_NEVER = "hn_never"
 _GL_TYPES = {name: enum for enum, name in gl_enums.GLSL_TYPE_NAMES.items()}
 
 
-@lru_cache(maxsize=64)
-def _module(text: str) -> tuple[spirv.Module, tuple[str, ...]]:
-    """The SPIR-V of a text without main(), and the literals that were taken out of it.
+@lru_cache(maxsize=256)
+def _module(text: str, main: str) -> tuple[spirv.Module, tuple[str, ...]]:
+    """The SPIR-V of a text with this main(), and the literals that were taken out of the text.
 
     Where the text does not compile without them (one decides the length of an array, say), they stay in it: then the
     compiler folds what is constant, and a constant in double is the shortest decimal that float32 rounds to the same.
     """
     lifted, found = literals.lift(text)
     try:
-        return spirv.read(native.glsl_spirv(Stage.FRAGMENT, lifted + _MAIN)), tuple(found)
+        return spirv.read(native.glsl_spirv(Stage.FRAGMENT, lifted + main)), tuple(found)
     except NativeError:
-        return spirv.read(native.glsl_spirv(Stage.FRAGMENT, literals.desktop(text) + _MAIN)), ()
+        return spirv.read(native.glsl_spirv(Stage.FRAGMENT, literals.for_spirv(text) + main)), ()
 
 
 class Interpretation:
@@ -60,6 +61,8 @@ class Interpretation:
     def __init__(self, source: Source, called: Signature, precision: str, names: Callable | None = None):
         self.signature, self.precision = called, precision
         floating, label = PRECISIONS[precision]
+        if not called.outputs and names is None:
+            raise CallError(f"{called} yields nothing", *called.origin)
         try:
             self.inputs = [
                 (p.name, [(f"hn_in{n}_{k}", leaf) for k, leaf in enumerate(leaves(p.type))])
@@ -69,13 +72,13 @@ class Interpretation:
         except CallError as error:
             raise CallError(f"{error.message}; it is {called}", *called.origin) from None
         try:
-            module, found = _module(source.text)
+            module, found = _module(source.text, _main(called))
         except NativeError as error:
             raise source.error(str(error)) from None
         self._numbers = Numbers(floating)
         values = _literal_values(module, found, floating)
         self._program = Program(module, self._numbers, values, source.origin, label, names)
-        self.function = _definition(module, called)
+        self.function = _called(module)
         self._places = interpreter_uniforms.read_by(module, self.function)
         #: those that the function reads, as a driver describes them
         self.uniforms = {name: _described(uniform) for name, uniform in self._places.items()}
@@ -187,14 +190,19 @@ def _literal_values(module: spirv.Module, found: tuple[str, ...], floating: type
         }
 
 
-def _definition(module: spirv.Module, called: Signature) -> spirv.Function:
-    """The function of a signature: that of its name whose parameters have its types."""
-    wanted = [str(p.type) for p in called.parameters]
-    for function in module.functions.values():
-        kinds = (kind.element if kind.kind == "pointer" else kind for _, kind, _ in function.parameters)
-        if function.name == called.name and [str(kind) for kind in kinds] == wanted:
-            return function
-    raise CallError(f"{called} is not among the functions that the compiler made", *called.origin)
+def _main(called: Signature) -> str:
+    """A main() whose last call is of this function. It begins with what the compiler adds: global variables' values."""
+    names = [f"hn_{n}" for n in range(len(called.parameters))]
+    variables = " ".join(f"{p.type} {name};" for p, name in zip(called.parameters, names, strict=True))
+    call = f"{called.name}({', '.join(names)});"
+    return f"\nuniform bool {_NEVER};\nvoid main() {{ if ({_NEVER}) {{ {variables} {call} }} }}\n"
+
+
+def _called(module: spirv.Module) -> spirv.Function:
+    """The function that main() calls last."""
+    entry = module.functions[module.entry]
+    calls = [i.operands[0] for block in entry.blocks for i in block.instructions if i.opcode == spirv.CALL]
+    return module.functions[calls[-1]]
 
 
 def _described(uniform: Uniform) -> native.Variable:

@@ -20,8 +20,9 @@ from .interpreter_ops import Value
 from .interpreter_steps import Step, compile_step, constant_values
 from .spirv import Module
 
-#: how often all loops of one call together may go round before it is given up as endless
-LOOP_LIMIT = 1 << 18
+#: how often all loops together may go round, for one chunk of a batch, before they are given up as endless; the
+#: software renderer stops at 65 535, and says nothing
+LOOP_LIMIT = 100_000
 
 _BRANCH, _CONDITIONAL, _SWITCH, _RETURN, _VALUE, _KILL = range(6)
 _EXITS = {
@@ -150,6 +151,7 @@ class _Code:
             for v in function.variables
         ]
         names = program.names_of(function)
+        self.nothing = None if function.result.kind == "void" else program.numbers.unassigned(function.result)
         self.entry = names.record_parameters() if names else ()
         self.blocks = []
         for block in function.blocks:
@@ -210,7 +212,8 @@ class Program:
         frame = Frame(mask, run)
         for step in code.entry:
             step(registers, frame)
-        return _follow(code, registers, frame)
+        result = _follow(code, registers, frame)
+        return code.nothing if result is None else result  # where all lanes met a discard
 
 
 def _follow(code: _Code, registers: list, frame: Frame) -> Value | None:

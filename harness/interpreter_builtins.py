@@ -201,7 +201,7 @@ BUILTINS: dict[int, tuple[str, Callable[..., Value]]] = {
     32: ("inversesqrt", _inverse_sqrt),
     33: ("determinant", _determinant),
     34: ("inverse", _inverse),
-    36: ("modf", lambda x: list(np.modf(x))),
+    35: ("modf", np.modf),
     37: ("min", np.fmin),
     38: ("min", np.minimum),
     39: ("min", np.minimum),

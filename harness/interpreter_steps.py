@@ -23,8 +23,9 @@ if TYPE_CHECKING:
 Step = Callable[[list, "Frame"], None]
 
 _CONVERSIONS = range(109, 116)
-_BITCAST = 124
+
 _FLOAT_TO_UINT, _FLOAT_TO_INT = 109, 110
+_MODF = 35  # of GLSL.std.450
 
 #: opcodes that have no meaning outside a driver -> what a user knows them as
 _ABSENT = {
@@ -90,6 +91,8 @@ def _compiled(program: Program, i: Instruction) -> Step | None:
     """The step that does what the instruction says."""
     to, operands = i.result, i.operands
     match i.opcode:
+        case spirv.LOAD | spirv.ACCESS_CHAIN if name := _input(program.module, operands[0]):
+            return _absent(program, i.line, f"{name}, which a stage gets,")
         case spirv.LOAD:
             return _load(program, to, operands[0])
         case spirv.STORE:
@@ -114,6 +117,14 @@ def _compiled(program: Program, i: Instruction) -> Step | None:
         case opcode if opcode in OPERATIONS:
             return _operation(to, OPERATIONS[opcode][1], operands)
     return _absent(program, i.line, _ABSENT.get(i.opcode, f"SPIR-V instruction {i.opcode}"))
+
+
+def _input(module: Module, pointer: int) -> str:
+    """The name of the stage's input that a pointer is; "" where it is none."""
+    variable = module.variables.get(pointer)
+    if variable is None or variable.storage != spirv.INPUT:
+        return ""
+    return variable.name or variable.type.name
 
 
 def _absent(program: Program, line: int, what: str) -> Step:
@@ -152,19 +163,11 @@ def _load(program: Program, to: int, pointer: int) -> Step | None:
     if pointer in program.literals:
         value = program.literals[pointer]
         return lambda registers, frame: registers.__setitem__(to, value)
-    variable = program.module.variables.get(pointer)
-    if variable and variable.storage == spirv.INPUT:
-        name = variable.name
-        return lambda registers, frame: _no_input(name)
 
     def load(registers: list, frame: Frame) -> None:
         registers[to] = registers[pointer].load()
 
     return load
-
-
-def _no_input(name: str) -> None:
-    raise CallError(f"{name} is an input of a stage, and has no value in a call")
 
 
 def _store(pointer: int, value: int) -> Step:
@@ -209,11 +212,23 @@ def _built_in(program: Program, i: Instruction) -> Step:
     _, number, *operands = i.operands
     if number not in BUILTINS:
         return _absent(program, i.line, f"the built-in function {number} of GLSL.std.450")
+    if number == _MODF:
+        return _modf(i.result, *operands)
     function = BUILTINS[number][1]
     if number in UNPACKED:
         dtype = program.numbers.dtype(i.type.number)
         return _operation(i.result, lambda word: function(word, dtype), tuple(operands))
     return _operation(i.result, function, tuple(operands))
+
+
+def _modf(to: int, value: int, pointer: int) -> Step:
+    """The fraction is the result, and the whole part goes where the pointer leads."""
+
+    def modf(registers: list, frame: Frame) -> None:
+        registers[to], whole = np.modf(registers[value])
+        registers[pointer].store(whole, frame.mask)
+
+    return modf
 
 
 def _conversion(numbers: Numbers, i: Instruction) -> Callable[[np.ndarray], np.ndarray]:

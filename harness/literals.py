@@ -13,6 +13,7 @@ from .rewrite import _Text
 
 PREFIX = "hn_literal_"
 
+_LOWEST = 330  # the first version of which SPIR-V can be made
 _DESKTOP = "#version 450"  # instead of ES, where a global variable cannot begin as a uniform's value
 _FLOAT = re.compile(r"(?!0[xX])(?=.*[.eE]|.*[fF]$)(?P<value>[\d.]+(?:[eE][+-]?\d+)?)[fF]?$")
 _STAYS_CONST = re.compile(r"(u?int|bool|[uib]vec[234])$")
@@ -23,24 +24,29 @@ def lift(text: str) -> tuple[str, list[str]]:
     """The text with its k-th float literal made the uniform ``hn_literal_k``, every line staying where it is.
 
     Returns the text and the literals' texts. ``const`` goes from all that is no integer or bool, since its value is
-    no constant of the language any more. Literals inside [] stay: the length of an array must be constant.
+    no constant of the language any more. Literals inside [] and in what is const stay: the length of an array must be
+    constant.
     """
     code = _Text(text)
     literals: list[str] = []
     depth = 0
+    const = False
     for k in code.solid():
         word = code[k]
         depth += (word == "[") - (word == "]")
-        if word == "const" and not _STAYS_CONST.match(code[_declared(code, k)]):
-            code.tokens[k].text = ""
-        elif not depth and code.tokens[k].kind == "number" and (match := _FLOAT.match(word)):
+        if word == "const":
+            const = bool(_STAYS_CONST.match(code[_declared(code, k)]))
+            code.tokens[k].text = word if const else ""
+        elif word in (";", "{"):  # of a declaration, or after a parameter's
+            const = False
+        elif not depth and not const and code.tokens[k].kind == "number" and (match := _FLOAT.match(word)):
             code.tokens[k].text = f"{PREFIX}{len(literals)}"
             literals.append(match["value"])
     first = next(code.solid(), None)
     if literals and first is not None:
         names = ", ".join(f"{PREFIX}{k}" for k in range(len(literals)))
         code.tokens[first].before = f"uniform float {names}; "
-    return desktop(str(code)), literals
+    return for_spirv(str(code)), literals
 
 
 def _declared(code: _Text, const: int) -> int:
@@ -51,7 +57,11 @@ def _declared(code: _Text, const: int) -> int:
     return k
 
 
-def desktop(text: str) -> str:
-    """The text for desktop GL, where it states ES."""
+def for_spirv(text: str) -> str:
+    """The text as desktop GL of a version and with a layout of its uniform blocks that SPIR-V can be made of."""
     stated, newline, rest = text.partition("\n")
-    return f"{_DESKTOP}{newline}{rest}" if stated.split()[-1:] == ["es"] else text
+    if stated.split()[-1] == "es":
+        stated = _DESKTOP
+    elif int(stated.split()[1]) < _LOWEST:
+        stated = f"#version {_LOWEST}"
+    return stated + newline + rest.replace("layout(packed)", "layout(std140)")

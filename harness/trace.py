@@ -11,11 +11,10 @@ from . import trace_names
 from .errors import CallError
 from .glsl import Source
 from .interpretation import Interpretation
-from .interpreter import Program
 from .interpreter_memory import Mask
 from .interpreter_ops import Value
 from .signature import Signature
-from .spirv import Function, Type
+from .spirv import Type
 
 #: the most that one trace may hold
 BYTES_MAX = 2 << 30
@@ -174,16 +173,7 @@ class Tracing:
     """An engine of calls that records, with the face of ``interpretation.Interpretation``."""
 
     def __init__(self, source: Source, signature: Signature, precision: str):
-        directions = [p.direction for p in signature.parameters]
-
-        def names(program: Program, function: Function) -> trace_names.Names:
-            outs = trace_names.outs(program, function)
-            if function is self.engine.function:
-                parameters = zip(function.parameters, directions, strict=True)
-                outs = frozenset(identifier for (identifier, _, _), direction in parameters if direction == "out")
-            return trace_names.Names(program, function, outs)
-
-        self.engine = Interpretation(source, signature, precision, names)
+        self.engine = Interpretation(source, signature, precision, trace_names.Names)
         self._source = source
         self.signature, self.inputs, self.outputs = signature, self.engine.inputs, self.engine.outputs
         self.uniforms = self.engine.uniforms

@@ -32,10 +32,10 @@ _SIMPLE = re.compile(r"[\w.\[\]]+$|[\w.]+\([^()]*\)$")
 
 
 class Names:
-    """The names in one function. ``outs`` are its parameters that bring no value in."""
+    """The names in one function."""
 
-    def __init__(self, program: Program, function: Function, outs: frozenset[int]):
-        self._program, self._function, self._outs = program, function, outs
+    def __init__(self, program: Program, function: Function):
+        self._program, self._function, self._outs = program, function, _outs(program, function)
         instructions = [i for block in function.blocks for i in block.instructions]
         self._made = {i.result: i for i in instructions if i.result}
         self._uses = Counter(operand for i in instructions for operand in set(_values(i)))
@@ -236,7 +236,7 @@ def _has_floats(kind: Type) -> bool:
     )
 
 
-def outs(program: Program, function: Function) -> frozenset[int]:
+def _outs(program: Program, function: Function) -> frozenset[int]:
     """The parameters of a function that bring nothing in: no call of it assigns to what it passes there."""
     found: set[int] = set()
     for caller in program.module.functions.values():

@@ -207,7 +207,7 @@ def glsl_tree(stage: Stage, text: str) -> str:
 
 
 def glsl_spirv(stage: Stage, text: str) -> np.ndarray:
-    """The words (uint32) of a stage with a main() as SPIR-V: not optimised, nothing dropped, with names and lines."""
+    """The words (uint32) of a stage with a main() as SPIR-V: what main() reaches, not optimised, with names."""
     words, count = _POINTER(), _SIZE()
     _done(_library.hn_glsl_spirv(stage, text.encode(), ctypes.byref(words), ctypes.byref(count)))
     taken = np.frombuffer(ctypes.string_at(words.value, count.value * 4), np.uint32)

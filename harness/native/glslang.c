@@ -139,8 +139,9 @@ int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_
     glslang_input_t input;
     if (describe(operation, stage, text, FOR_SPIRV, &input))
         return -1;
-    /* The debug bit has the parser keep the lines, which the generator then writes down. */
-    input.messages |= GLSLANG_MSG_KEEP_UNCALLED_BIT | GLSLANG_MSG_DEBUG_INFO_BIT;
+    /* The debug bit has the parser keep the lines, which the generator then writes down. Uncalled functions are
+     * not kept: where one calls a function without a body, the generator crashes. */
+    input.messages |= GLSLANG_MSG_DEBUG_INFO_BIT;
     glslang_shader_t *shader = parse_with(
         operation, &input, GLSLANG_SHADER_AUTO_MAP_LOCATIONS | GLSLANG_SHADER_AUTO_MAP_BINDINGS);
     if (!shader)

@@ -267,7 +267,7 @@ def test_overloads_that_do_not_fit_are_listed(called, call, message):
 
 
 def test_an_unknown_mode_lists_those_that_there_are(called):
-    assert "no mode 'exact'; there are: as-written, precise" in str(refusal(lambda: called.with_mode("exact")))
+    assert "no mode 'exact'; there are: as-written, precise, double" in str(refusal(lambda: called.with_mode("exact")))
 
 
 def test_a_wrong_call_leaves_the_function_usable(called):

@@ -206,16 +206,17 @@ static void test_spirv(void) {
     enum { MAGIC = 0x07230203, OP_LINE = 8, OP_FUNCTION = 54, NO_CONTROL = 0 };
     const char *text = HEAD "uniform Block { float b; };\n"
                             "uniform float u;\n"
-                            "float uncalled(float x) {\n"
+                            "float called(float x) {\n"
                             "    float kept = x * u + b;\n"
                             "    return kept * 0.0; }\n"
-                            "void main() {}\n";
+                            "float f(); float uncalled() { return f(); }\n" /* must not crash the generator */
+                            "void main() { called(1.0); }\n";
     uint32_t *words = NULL;
     size_t n = 0;
     CHECK(hn_glsl_spirv(HN_FRAGMENT, text, &words, &n) == 0);
     CHECK(n > 5 && words[0] == MAGIC);
     CHECK(instructions(words, n, OP_FUNCTION, 2, NO_CONTROL) == 2);
-    CHECK(is_named(words, n, "uncalled(f1;"));
+    CHECK(is_named(words, n, "called(f1;"));
     CHECK(is_named(words, n, "kept")); /* an optimiser would have removed it */
     CHECK(is_named(words, n, "u"));
     CHECK(instructions(words, n, OP_LINE, 1, 5) > 0);
