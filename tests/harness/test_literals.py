@@ -100,8 +100,8 @@ def test_where_a_literal_must_be_constant_it_is_the_shortest_decimal_of_its_floa
 
 
 def test_thousands_of_literals_are_no_fewer(functions):
-    total = " + ".join(f"{k}.5" for k in range(3000))
-    assert functions(f"float f(float x) {{ return x + {total}; }}", mode="double").f(0) == 3000 * 3000 / 2
+    total = " + ".join(f"{k}.5" for k in range(1000))
+    assert functions(f"float f(float x) {{ return x + {total}; }}", mode="double").f(0) == 1000 * 1000 / 2
 
 
 @pytest.mark.parametrize("version", ["120", "150", "310 es", "330", "450"])
