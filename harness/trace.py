@@ -20,7 +20,7 @@ from .spirv import Type
 BYTES_MAX = 2 << 30
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Local:
     """One assignment, operation, parameter or returned value, with its values for the whole batch.
 
@@ -47,7 +47,7 @@ class Local:
         return f"<{self.file}:{self.line}: {self.name}{told}>"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Origin:
     """Where a value that is not finite begins: a Local, and the first element of the batch where it does."""
 
@@ -180,7 +180,7 @@ class Tracing:
         self.array_length, self.set_uniform = self.engine.array_length, self.engine.set_uniform
         self._events: list = []
         self._count = 0
-        self._finite: np.ndarray | bool = True
+        self._finite = np.ones(0, bool)
 
     def run(self, arrays: dict[str, np.ndarray], count: int) -> list[list[np.ndarray]]:
         """As ``Interpretation.run``, all elements at once."""
@@ -188,13 +188,15 @@ class Tracing:
         self._count, self._events = count, recorder.events
         if not count:
             return self.engine.run(arrays, count)
-        self._finite = np.logical_and.reduce([np.isfinite(a).all(axis=1) for a in arrays.values()])
+        self._finite = np.ones(count, bool)
+        for array in arrays.values():
+            self._finite &= np.isfinite(array).all(axis=1)
         return self.engine.evaluate(arrays, slice(0, count), recorder)
 
     def trace(self, result, batch: tuple[int, ...]) -> Trace:
         """What the last run recorded, in the shape of its batch."""
-        finite = np.broadcast_to(self._finite, self._count).reshape(batch)
-        return Trace(self.signature, result, [self._local(batch, *event) for event in self._events], finite)
+        locals_ = [self._local(batch, *event) for event in self._events]
+        return Trace(self.signature, result, locals_, self._finite.reshape(batch))
 
     def _local(self, batch, name: str, kind: Type, line: int, value: np.ndarray, mask: Mask, born: np.ndarray) -> Local:
         full = np.broadcast_to(value, (*value.shape[:-1], self._count))
