@@ -95,6 +95,7 @@ Outer moved(Outer o, int k, out mat3x2 t, inout uvec3 u)
 }
 float table(int k) { float t[4] = float[](0.5, 1.5, 2.5, 3.5); return t[k]; }
 float component(vec3 v, int k) { return v[k]; }
+float kept(vec3 v, int k, bool store) { if (store) v[k] = 7.0; return v[k]; }
 vec3 placed(vec3 v, int k) { v[k] = 7.0; return v; }
 """
 
@@ -121,6 +122,10 @@ def test_an_index_known_at_run_time_reads_and_writes_its_own_place(functions, ma
     assert called.table([0, 3, 2]).tolist() == [0.5, 3.5, 2.5]
     assert called.component(v, [2, 0, 1]).tolist() == [6, 4, 5]
     assert called.placed(v, [2, 0, 1]).tolist() == [[4, 5, 7], [7, 5, 6], [4, 7, 6]]
+
+
+def test_a_place_is_written_in_the_lanes_that_take_part(functions):
+    assert functions(DATA, mode="double").kept([4, 5, 6], [0, 1, 2], [True, False, True]).tolist() == [7, 5, 7]
 
 
 def test_an_index_beyond_the_end_is_that_of_the_end(functions):

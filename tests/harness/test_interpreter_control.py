@@ -230,6 +230,13 @@ def test_a_global_variable_begins_anew_in_each_chunk_and_call(compiled):
     assert compiled.globals(1) == 6
 
 
+def test_a_global_variable_that_was_never_assigned_is_nan_and_remembers_no_other_call(functions):
+    called = functions("float g; float f(float x) { if (x > 0.0) g = x; return g; }", mode="double")
+    np.testing.assert_array_equal(called.f([1, -1]), [1, np.nan])
+    assert np.isnan(called.f(-1))
+    assert np.isnan(called.f(np.append(np.ones(LANES), -1))[-1])
+
+
 @pytest.mark.parametrize(
     "loop",
     ["while (true) x += 1.0;  // HERE", "for (;;) x = -x;  // HERE", "do { x *= 0.5; } while (x >= 0.0);  // HERE"],
@@ -280,8 +287,9 @@ def test_a_loop_of_as_many_rounds_as_the_driver_can_do_is_no_endless_one(functio
 
 @pytest.mark.parametrize("where", ["f", "inner"])
 def test_all_discarded_at_once_ends_the_loop_too(functions, where):
+    inner, outer = ("true", "false") if where == "inner" else ("false", "true")
     text = f"""
-    vec2 inner(float x) {{ if ({"true" if where == "inner" else "x < 0.0"}) discard; return vec2(x); }}
-    float f(float x) {{ while (true) {{ x += inner(x).y; if (x > 0.0) discard; }} return x; }}
+    vec2 inner(float x) {{ if ({inner}) discard; return vec2(x); }}
+    float f(float x) {{ while (true) {{ x += inner(x).y; if ({outer}) discard; }} return x; }}
     """
     assert np.isnan(functions(text, mode="double").f([1, 2])).all()

@@ -171,6 +171,13 @@ def test_what_is_not_computed_or_was_given_is_no_origin(functions, case):
     assert functions(text).f.trace(x).first_non_finite() is None
 
 
+def test_nothing_is_executed_after_a_discard(functions):
+    text = "float g(float x) { if (x < 0.0) discard; return x; } float f(float x) { float y = g(x) * 2.0; return y; }"
+    trace = functions(text).f.trace([1, -1])
+    assert trace["y"][0].executed.tolist() == [True, False]
+    np.testing.assert_array_equal(trace.result, [2, np.nan])
+
+
 def test_a_loop_has_each_of_its_rounds(functions):
     text = "float f(float x) { float y = 8.0; for (int i = 0; i < 4; ++i) { if (y <= x) break; y -= 2.0; } return y; }"
     rounds = functions(text).f.trace([0, 5])["y"]
