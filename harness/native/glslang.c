@@ -142,8 +142,8 @@ int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_
     /* The debug bit has the parser keep the lines, which the generator then writes down. Uncalled functions are
      * not kept: where one calls a function without a body, the generator crashes. */
     input.messages |= GLSLANG_MSG_DEBUG_INFO_BIT;
-    glslang_shader_t *shader = parse_with(
-        operation, &input, GLSLANG_SHADER_AUTO_MAP_LOCATIONS | GLSLANG_SHADER_AUTO_MAP_BINDINGS);
+    glslang_shader_t *shader =
+        parse_with(operation, &input, GLSLANG_SHADER_AUTO_MAP_LOCATIONS | GLSLANG_SHADER_AUTO_MAP_BINDINGS);
     if (!shader)
         return -1;
     glslang_spv_options_t options = {.generate_debug_info = true, .disable_optimizer = true};
