@@ -43,11 +43,7 @@ def evaluate(evaluation: Evaluation, arguments: Mapping[str, list[np.ndarray]], 
 
     ``out``: an array, or a tuple of arrays, of the result's shapes that it is written into, and that is returned.
     """
-    inputs = [
-        _Input(buffer, name, leaf, array)
-        for name, buffers in evaluation.inputs
-        for (buffer, leaf), array in zip(buffers, arguments[name], strict=True)
-    ]
+    inputs = _inputs(evaluation, arguments)
     batch = _batch(evaluation.signature, inputs)
     if out is not None:
         return _into(evaluation, inputs, batch, out)
@@ -61,6 +57,21 @@ def evaluate(evaluation: Evaluation, arguments: Mapping[str, list[np.ndarray]], 
     for index, part in blocks:
         _store(whole, index, part)
     return results.rebuilt(first, iter(whole))
+
+
+def at_once(evaluation: Evaluation, arguments: Mapping[str, list[np.ndarray]]) -> tuple[Any, tuple[int, ...]]:
+    """The result of ``evaluate`` and the shape of the batch, all its elements in one piece."""
+    inputs = _inputs(evaluation, arguments)
+    batch = _batch(evaluation.signature, inputs)
+    return _evaluate(evaluation, inputs, batch), batch
+
+
+def _inputs(evaluation: Evaluation, arguments: Mapping[str, list[np.ndarray]]) -> list[_Input]:
+    return [
+        _Input(buffer, name, leaf, array)
+        for name, buffers in evaluation.inputs
+        for (buffer, leaf), array in zip(buffers, arguments[name], strict=True)
+    ]
 
 
 def common_batch(shapes: Sequence[tuple[int, ...]]) -> tuple[int, ...]:

@@ -14,6 +14,7 @@ MODES = {
     "as-written": "the source as it stands: the driver may rewrite its arithmetic",
     "precise": "every operation as written, in the order written",
     "mediump": "the same in half precision, but for what the source declares highp",
+    "double": "every operation as written, in float64, by our interpreter instead of the driver",
 }
 VERSION = 330  # the first that a function can be called from
 PRECISE_VERSION = 400  # the first with `precise`

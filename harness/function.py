@@ -18,7 +18,9 @@ from .uniform_values import set_all
 if TYPE_CHECKING:  # what few callers need is loaded when they do
     import inspect
 
+    from .interpretation import Interpretation
     from .mode_comparison import ModeComparison
+    from .trace import Trace
 
 
 def known_mode(mode: str) -> str:
@@ -28,8 +30,12 @@ def known_mode(mode: str) -> str:
     return mode
 
 
-def _engine(source: Source, signature: Signature, mode: str) -> Evaluation:
-    """What evaluates a function in a mode."""
+def _engine(source: Source, signature: Signature, mode: str) -> Evaluation | Interpretation:
+    """What evaluates a function in a mode: the driver, or in double our interpreter."""
+    if mode == "double":
+        from .interpretation import Interpretation
+
+        return Interpretation(source, signature, "float64")
     return Evaluation(source, signature, mode)
 
 
@@ -114,6 +120,22 @@ class Function:
             if isinstance(value, Texture):
                 evaluation.set_sampler(name, value)
         return batches.evaluate(evaluation, numbers, out)
+
+    def trace(self, /, *args, precision: str = "float32", **kwargs) -> Trace:
+        """Evaluates the function as a call does, and tells every float that it computes on the way.
+
+        Our interpreter does it, not the driver: in strict IEEE arithmetic of ``precision``, "float32", "float64" or
+        "float16". ``Trace.first_non_finite()`` finds where a NaN begins that the result hides.
+        """
+        from .interpretation import PRECISIONS
+        from .trace import Tracing
+
+        if precision not in PRECISIONS:
+            raise CallError(f"no precision {precision!r}{among(str(precision), PRECISIONS)}")
+        signature, numbers, rest = self._overload(args, kwargs)
+        tracing = Tracing(self._library.source, signature, precision)
+        set_all(tracing, rest)
+        return tracing.trace(*batches.at_once(tracing, numbers))
 
     def stream(self, chunks: Iterable[Mapping[str, Any]], /, **constant) -> Iterator[Any]:
         """Evaluates chunk after chunk, each a dict of arguments by name; yields the results, holding none.

@@ -104,6 +104,7 @@ _PROTOTYPES = {
     "hn_glsl_check": (_INT, [_INT, _TEXT, _INT]),
     "hn_glsl_preprocess": (_POINTER, [_INT, _TEXT]),
     "hn_glsl_tree": (_POINTER, [_INT, _TEXT]),
+    "hn_glsl_spirv": (_INT, [_INT, _TEXT, ctypes.POINTER(_POINTER), ctypes.POINTER(_SIZE)]),
     "hn_program_create": (_UINT, [_TEXT, _TEXT]),
     "hn_program_delete": (None, [_UINT]),
     "hn_program_uniforms": (_INT, [_UINT, _VARIABLES, _INT]),
@@ -229,6 +230,15 @@ def glsl_preprocess(stage: Stage, text: str) -> str:
 def glsl_tree(stage: Stage, text: str) -> str:
     """glslang's dump of the syntax tree, uncalled functions included."""
     return _take_text(_library.hn_glsl_tree(stage, text.encode()))
+
+
+def glsl_spirv(stage: Stage, text: str) -> np.ndarray:
+    """The words (uint32) of a stage with a main() as SPIR-V: what main() reaches, not optimised, with names."""
+    words, count = _POINTER(), _SIZE()
+    _done(_library.hn_glsl_spirv(stage, text.encode(), ctypes.byref(words), ctypes.byref(count)))
+    taken = np.frombuffer(ctypes.string_at(words.value, count.value * 4), np.uint32)
+    _library.hn_free(words)
+    return taken
 
 
 def evaluate_vertex() -> str:

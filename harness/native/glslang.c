@@ -55,16 +55,14 @@ static int describe(const char *operation, hn_stage stage, const char *text, tar
     return 0;
 }
 
-/* A shader after the preprocessor, or NULL. */
-static glslang_shader_t *preprocess(const char *operation, const glslang_input_t *input) {
+/* A shader after the preprocessor, or NULL. `options` are of glslang_shader_options_t. */
+static glslang_shader_t *preprocess_with(const char *operation, const glslang_input_t *input, int options) {
     glslang_shader_t *shader = glslang_shader_create(input);
     if (!shader) {
         hn_fail("%s: glslang makes no shader", operation);
         return NULL;
     }
-    /* Locations are given out as SHADERed has it done. Bindings are not: it refuses a uniform block without
-     * one. */
-    glslang_shader_set_options(shader, GLSLANG_SHADER_AUTO_MAP_LOCATIONS);
+    glslang_shader_set_options(shader, options);
     if (!glslang_shader_preprocess(shader, input)) {
         fail_with_log(operation, glslang_shader_get_info_log(shader));
         glslang_shader_delete(shader);
@@ -73,9 +71,14 @@ static glslang_shader_t *preprocess(const char *operation, const glslang_input_t
     return shader;
 }
 
+/* Locations are given out as SHADERed has it done. Bindings are not: it refuses a uniform block without one. */
+static glslang_shader_t *preprocess(const char *operation, const glslang_input_t *input) {
+    return preprocess_with(operation, input, GLSLANG_SHADER_AUTO_MAP_LOCATIONS);
+}
+
 /* A shader after the parser, or NULL. (The C interface parses what its preprocessor left.) */
-static glslang_shader_t *parse(const char *operation, const glslang_input_t *input) {
-    glslang_shader_t *shader = preprocess(operation, input);
+static glslang_shader_t *parse_with(const char *operation, const glslang_input_t *input, int options) {
+    glslang_shader_t *shader = preprocess_with(operation, input, options);
     if (shader && !glslang_shader_parse(shader, input)) {
         fail_with_log(operation, glslang_shader_get_info_log(shader));
         glslang_shader_delete(shader);
@@ -84,21 +87,31 @@ static glslang_shader_t *parse(const char *operation, const glslang_input_t *inp
     return shader;
 }
 
-static int generate_spirv(const char *operation, glslang_shader_t *shader, const glslang_input_t *input) {
+static glslang_shader_t *parse(const char *operation, const glslang_input_t *input) {
+    return parse_with(operation, input, GLSLANG_SHADER_AUTO_MAP_LOCATIONS);
+}
+
+/* The linked program of one parsed shader, with its SPIR-V, or NULL. */
+static glslang_program_t *generate_spirv(const char *operation, glslang_shader_t *shader,
+                                         const glslang_input_t *input, glslang_spv_options_t options) {
     glslang_program_t *program = glslang_program_create();
-    if (!program)
-        return hn_fail("%s: glslang makes no program", operation);
-    glslang_program_add_shader(program, shader);
-    int result = 0;
-    if (!glslang_program_link(program, (int)input->messages) || !glslang_program_map_io(program)) {
-        result = fail_with_log(operation, glslang_program_get_info_log(program));
-    } else {
-        glslang_program_SPIRV_generate(program, input->stage);
-        if (glslang_program_SPIRV_get_size(program) == 0)
-            result = fail_with_log(operation, glslang_program_SPIRV_get_messages(program));
+    if (!program) {
+        hn_fail("%s: glslang makes no program", operation);
+        return NULL;
     }
+    glslang_program_add_shader(program, shader);
+    const char *log = NULL;
+    if (!glslang_program_link(program, (int)input->messages) || !glslang_program_map_io(program)) {
+        log = glslang_program_get_info_log(program);
+    } else {
+        glslang_program_SPIRV_generate_with_options(program, input->stage, &options);
+        if (glslang_program_SPIRV_get_size(program) > 0)
+            return program;
+        log = glslang_program_SPIRV_get_messages(program);
+    }
+    fail_with_log(operation, log);
     glslang_program_delete(program);
-    return result;
+    return NULL;
 }
 
 int hn_glsl_check(hn_stage stage, const char *text, int spirv) {
@@ -109,7 +122,44 @@ int hn_glsl_check(hn_stage stage, const char *text, int spirv) {
     glslang_shader_t *shader = parse(operation, &input);
     if (!shader)
         return -1;
-    int result = spirv ? generate_spirv(operation, shader, &input) : 0;
+    int result = 0;
+    if (spirv) {
+        glslang_spv_options_t options = {.disable_optimizer = true};
+        glslang_program_t *program = generate_spirv(operation, shader, &input, options);
+        result = program ? 0 : -1;
+        if (program)
+            glslang_program_delete(program);
+    }
+    glslang_shader_delete(shader);
+    return result;
+}
+
+int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_words) {
+    const char *operation = "hn_glsl_spirv";
+    glslang_input_t input;
+    if (describe(operation, stage, text, FOR_SPIRV, &input))
+        return -1;
+    /* The debug bit has the parser keep the lines, which the generator then writes down. Uncalled functions are
+     * not kept: where one calls a function without a body, the generator crashes. */
+    input.messages |= GLSLANG_MSG_DEBUG_INFO_BIT;
+    glslang_shader_t *shader =
+        parse_with(operation, &input, GLSLANG_SHADER_AUTO_MAP_LOCATIONS | GLSLANG_SHADER_AUTO_MAP_BINDINGS);
+    if (!shader)
+        return -1;
+    glslang_spv_options_t options = {.generate_debug_info = true, .disable_optimizer = true};
+    glslang_program_t *program = generate_spirv(operation, shader, &input, options);
+    int result = -1;
+    if (program) {
+        *n_words = glslang_program_SPIRV_get_size(program);
+        *words = malloc(*n_words * sizeof **words);
+        if (*words) {
+            glslang_program_SPIRV_get(program, *words);
+            result = 0;
+        } else {
+            hn_fail("%s: out of memory", operation);
+        }
+        glslang_program_delete(program);
+    }
     glslang_shader_delete(shader);
     return result;
 }

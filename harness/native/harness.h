@@ -60,6 +60,9 @@ char *hn_glsl_preprocess(hn_stage stage, const char *text);
 /* glslang's dump of the syntax tree, uncalled functions included: function signatures with in/out, parameter
  * and member names. `text` needs no main(). */
 char *hn_glsl_tree(hn_stage stage, const char *text);
+/* A stage with a main() as SPIR-V: what main() reaches, not optimised, with names and lines. Locations and
+ * bindings that are not stated are given out. `*words` is the caller's: give it to hn_free(). */
+int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_words);
 
 /* ---- Programs (program.c) ------------------------------------------------------------------------------ */
 

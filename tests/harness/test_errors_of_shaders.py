@@ -367,7 +367,8 @@ def test_overloads_are_listed_where_none_or_several_fit(called, call, message):
 
 
 def test_an_unknown_mode_lists_those_that_there_are(called):
-    assert "no mode 'exact'; there are: as-written, precise, mediump, double" in str(refusal(lambda: called.with_mode("exact")))
+    error = refusal(lambda: called.with_mode("exact"))
+    assert "no mode 'exact'; there are: as-written, precise, mediump, double" in str(error)
 
 
 def test_a_wrong_call_leaves_the_function_usable(called):

@@ -293,7 +293,7 @@ def test_groups_in_turns(functions, monkeypatch, limit):
 # ---- Uniforms with an initialiser ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("every_mode", ["as-written", "precise", "mediump"])
+@pytest.mark.parametrize("every_mode", ["as-written", "precise", "mediump", "double"])
 @pytest.mark.parametrize(
     ("declared", "read", "initial", "other"),
     [
@@ -328,7 +328,7 @@ def test_one_without_has_to_be_given_still(functions):
 # ---- Nothing folds ---------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("every_mode", ["as-written", "precise", "mediump"])
+@pytest.mark.parametrize("every_mode", ["as-written", "precise", "mediump", "double"])
 def test_a_single_value_gives_the_bits_that_an_array_gives(root, functions, every_mode):
     """Every argument by turns is one for the whole batch, or stands there for each element."""
     x = np.random.default_rng(2).random((3, 12, 3)).astype(np.float32) + np.float32(0.1)

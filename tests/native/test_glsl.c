@@ -1,4 +1,4 @@
-/* test_glsl.c: glslang's checks, preprocessor and tree. */
+/* test_glsl.c: glslang's checks, preprocessor, tree and SPIR-V. */
 #include "check.h"
 
 #include <stdlib.h>
@@ -185,10 +185,58 @@ static void test_tree(void) {
     CHECK_FAILS(!hn_glsl_tree(HN_FRAGMENT, NULL), "hn_glsl_tree: no text");
 }
 
+/* How many instructions of an opcode there are whose operand `place` (0: the first) is `value`. */
+static int instructions(const uint32_t *words, size_t n, uint32_t opcode, uint32_t place, uint32_t value) {
+    int found = 0;
+    for (size_t k = 5; k < n && words[k] >> 16 > 0; k += words[k] >> 16)
+        found += (words[k] & 0xffff) == opcode && place + 1 < words[k] >> 16 && words[k + 1 + place] == value;
+    return found;
+}
+
+/* 1 when an OpName gives this name. */
+static int is_named(const uint32_t *words, size_t n, const char *name) {
+    enum { OP_NAME = 5 };
+    for (size_t k = 5; k < n && words[k] >> 16 > 0; k += words[k] >> 16)
+        if ((words[k] & 0xffff) == OP_NAME && strcmp((const char *)&words[k + 2], name) == 0)
+            return 1;
+    return 0;
+}
+
+static void test_spirv(void) {
+    enum { MAGIC = 0x07230203, OP_LINE = 8, OP_FUNCTION = 54, NO_CONTROL = 0 };
+    const char *text = HEAD "uniform Block { float b; };\n"
+                            "uniform float u;\n"
+                            "float called(float x) {\n"
+                            "    float kept = x * u + b;\n"
+                            "    return kept * 0.0; }\n"
+                            "float f(); float uncalled() { return f(); }\n" /* must not crash the generator */
+                            "void main() { called(1.0); }\n";
+    uint32_t *words = NULL;
+    size_t n = 0;
+    CHECK(hn_glsl_spirv(HN_FRAGMENT, text, &words, &n) == 0);
+    CHECK(n > 5 && words[0] == MAGIC);
+    CHECK(instructions(words, n, OP_FUNCTION, 2, NO_CONTROL) == 2);
+    CHECK(is_named(words, n, "called(f1;"));
+    CHECK(is_named(words, n, "kept")); /* an optimiser would have removed it */
+    CHECK(is_named(words, n, "u"));
+    CHECK(instructions(words, n, OP_LINE, 1, 5) > 0);
+    CHECK(instructions(words, n, OP_LINE, 1, 6) > 0);
+    CHECK(instructions(words, n, OP_LINE, 1, 9) == 0);
+    hn_free(words);
+
+    CHECK_FAILS(hn_glsl_spirv(HN_FRAGMENT, HEAD "float f() { return a; }\n", &words, &n) == -1,
+                "ERROR: 0:2: 'a'");
+    CHECK_FAILS(hn_glsl_spirv(HN_FRAGMENT, HEAD "float f;\n", &words, &n) == -1, "Missing entry point");
+    CHECK_FAILS(hn_glsl_spirv(HN_FRAGMENT, HEAD "float f(); void main() { f(); }\n", &words, &n) == -1,
+                "No function definition (body) found");
+    CHECK_FAILS(hn_glsl_spirv(HN_FRAGMENT, NULL, &words, &n) == -1, "hn_glsl_spirv: no text");
+}
+
 void test_glsl(void) {
     CHECK(strcmp(hn_error(), "") == 0);
     test_check();
     test_long_message();
     test_preprocess();
     test_tree();
+    test_spirv();
 }
