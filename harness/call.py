@@ -89,6 +89,10 @@ class Function:
         self.__name__ = overloads[0].name
         self.__doc__ = "\n".join(f"{s}    [{s.origin[0]}:{s.origin[1]}]" for s in overloads)
 
+    def __getstate__(self):
+        """Without what was compiled: a worker process compiles for itself."""
+        return self.__dict__ | {"_compiled": {}}
+
     def __repr__(self):
         return f"<GLSL {'; '.join(map(str, self._overloads))}>"
 

@@ -33,3 +33,11 @@ class CallError(HarnessError, TypeError):
 
 class NativeError(HarnessError):
     """The native library or the driver under it refuses; the message names the operation."""
+
+
+class CompareError(HarnessError, ValueError):
+    """A comparison that could not fail, or has no meaning: nothing to compare, shapes or tolerances that do not fit."""
+
+
+class DomainError(HarnessError, ValueError):
+    """Inputs are described by what is no domain, or does not suit the parameter."""
