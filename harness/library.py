@@ -1,0 +1,58 @@
+"""A GLSL file as it was loaded: what it was loaded with, the text for the compiler, and the functions in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from . import comments, glsl, native, rewrite
+from .native import Stage
+from .signature import Signature, signatures
+from .uniform_values import initialised
+
+
+@dataclass(frozen=True, eq=False)
+class Library:
+    """The functions of a file. ``compiled`` keeps what was compiled of them, by function and mode."""
+
+    defines: Mapping[str, str]
+    include_dirs: Sequence[str]
+    source: glsl.Source
+    signatures: Sequence[Signature]
+    compiled: dict[tuple, Any] = field(default_factory=dict)
+
+    def __getstate__(self):
+        """Without what was compiled: a worker process compiles for itself."""
+        return self.__dict__ | {"compiled": {}}
+
+    @property
+    def path(self) -> str:
+        """The file, as a user likes to read it."""
+        return self.source.path
+
+    @cached_property
+    def comments(self) -> dict[Signature, str]:
+        """The comment directly above each function, "" where there is none."""
+        return comments.above(self.signatures)
+
+    @cached_property
+    def initialised(self) -> frozenset[str]:
+        """The uniforms that the file gives a value, so that a call need not."""
+        return initialised(self.source.text)
+
+
+def load(path: str | Path, defines: Mapping[str, Any], include_dirs: Sequence[str | Path]) -> Library:
+    """Reads a file, its includes and its signatures. GlslError when it does not compile."""
+    path = Path(path)
+    macros = {name: str(text) for name, text in defines.items()}
+    source = glsl.load(path, macros, [*include_dirs, path.parent], version=glsl.VERSION)
+    try:
+        text = rewrite.isolate(native.glsl_preprocess(Stage.FRAGMENT, source.text))
+    except native.NativeError as error:
+        raise source.error(str(error)) from None
+    plain = replace(source, text=text, written=source.text)
+    functions = signatures(plain, rewrite.struct_names(text), rewrite.result_names(text))
+    return Library(macros, [str(folder) for folder in include_dirs], plain, functions)
