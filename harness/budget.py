@@ -15,7 +15,7 @@ from .inputs import Batch, results
 from .ulp import distance, ulp_difference
 
 if TYPE_CHECKING:
-    from .call import Function
+    from .function import Function
 
 
 @dataclass(frozen=True)

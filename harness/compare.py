@@ -26,7 +26,7 @@ from .inputs import Batch, elementwise, results
 from .ulp import Precision, distance, precision_named, ulp_difference
 
 if TYPE_CHECKING:
-    from .call import Function
+    from .function import Function
 
 __all__ = ["assert_close", "assert_finite", "assert_ulp", "elementwise", "error_budget", "ulp_difference"]
 

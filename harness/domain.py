@@ -24,13 +24,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from . import arguments
 from .errors import CallError, DomainError
 from .inputs import Batch, named_leaves
 from .signature import Array, Signature, Struct
 from .spaces import SIMPLE, WORDS, Space, Unit, from_ordered, ordered, space
 
 if TYPE_CHECKING:
-    from .call import Function
+    from .function import Function
 
 ROW = ""  # the column of the rows of given values: no part has this name
 #: ways in which one input may depend on another of the same kind
@@ -98,6 +99,10 @@ class Domain:
     # ---- Drawing -----------------------------------------------------------------------------------------------------
 
     def edges(self, at_most: int, random: np.random.Generator) -> Batch:
+        """Inputs that are edges, as ``edge_columns`` has them."""
+        return self.batch(self.edge_columns(at_most, random))
+
+    def edge_columns(self, at_most: int, random: np.random.Generator) -> dict[str, np.ndarray]:
         """Every combination of edges and given rows; where those are too many, ``at_most`` of them by chance."""
         counts = [self.rows if name == ROW else self.spaces[name].edges for name in self.columns]
         total = int(np.prod(counts, dtype=object)) if counts else 1
@@ -105,7 +110,7 @@ class Domain:
             places = np.array(list(itertools.product(*map(range, counts))), np.int64).reshape(total, len(counts))
         else:
             places = random.integers(0, counts, (at_most, len(counts)))
-        return self.batch(self._simple(places))
+        return self._simple(places)
 
     def sample(self, count: int, random: np.random.Generator) -> Batch:
         """Inputs by chance, as ``draw`` has them."""
@@ -233,8 +238,6 @@ def _table(
     f: Function, signature: Signature, words: Mapping[str, Any], spaces: Mapping[str, Space]
 ) -> dict[str, np.ndarray]:
     """The given values as arrays (rows, ...) of what has no space, all of the same length or 1."""
-    from .call import _leaf_arrays  # not above: call imports what compares its results
-
     table = {}
     for p in signature.inputs:
         if not any(p.name in _owners(n) and not isinstance(v, str) for n, v in words.items()):
@@ -243,7 +246,7 @@ def _table(
         chosen = [(n, leaf) for n, leaf in parts.items() if n not in spaces]
         filled = _filled(p.type, p.name, words, spaces)
         try:
-            arrays = dict(zip(parts, _leaf_arrays(p.type, filled, p.name), strict=True))
+            arrays = dict(zip(parts, arguments.numbers(p, filled), strict=True))
         except CallError as error:
             raise CallError(f"{error.message}; it is {signature}", *signature.origin) from None
         for name, leaf in chosen:

@@ -5,6 +5,7 @@ Only the command line turns them into text and an exit code; everywhere else the
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 
@@ -41,3 +42,12 @@ class CompareError(HarnessError, ValueError):
 
 class DomainError(HarnessError, ValueError):
     """Inputs are described by what is no domain, or does not suit the parameter."""
+
+
+def did_you_mean(name: str, there: Iterable[str]) -> str:
+    """What a message about an unknown name ends with: the nearest of the names that there are, or nothing."""
+    from difflib import get_close_matches  # errors alone pay for it
+
+    by_case = {known.lower(): known for known in there}
+    near = get_close_matches(name.lower(), by_case, 1)
+    return f"; did you mean {by_case[near[0]]}?" if near else ""

@@ -12,7 +12,7 @@ import numpy as np
 from .inputs import Batch
 
 if TYPE_CHECKING:
-    from .call import Function
+    from .function import Function
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from .failure import in_function, numbers
 from .inputs import Batch, results
 
 if TYPE_CHECKING:
-    from .call import Function
+    from .function import Function
 
 _TRACED = 1 << 16  # inputs traced at once: every local of each is held in memory
 

@@ -14,7 +14,7 @@ from .evaluation import Leaf, leaves
 from .signature import Array, Signature, Struct, Type
 
 if TYPE_CHECKING:
-    from .call import Function
+    from .function import Function
 
 
 def named_leaves(signature: Signature) -> dict[str, Leaf]:
