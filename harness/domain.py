@@ -196,7 +196,8 @@ def _related(
     step = 10.0 ** (-9 * share[:, None])
     if width == 1:
         steps = np.rint(2.0 ** (24 * share[:, None])).astype(np.int64)
-        near = from_ordered(ordered(one) + steps).astype(np.float64)
+        largest = ordered(np.float32([np.finfo(np.float32).max]))
+        near = from_ordered(np.minimum(ordered(one.astype(np.float32)) + steps, largest)).astype(np.float64)
     else:
         near = one + step * other
     about = flat[axis][chosen].astype(np.float64) if axis and flat[axis].shape[1] == width else np.eye(width)[-1]
