@@ -38,7 +38,7 @@ test-sanitize: $(VENV)/bin/python ## the C library under AddressSanitizer and UB
 	ctest --test-dir $(SANITIZED) --output-on-failure
 
 test-exhaustive: $(VENV)/.harness $(VENV)/.test ## functions of one float at every float of their domain (minutes)
-	$(BIN)/python -m pytest -rA --durations=0 tests/exhaustive
+	$(BIN)/python -m pytest -rA --durations=0 tests/exhaustive/every_float.py
 
 bench: $(VENV)/.harness $(VENV)/.bench ## speed and memory, beside numpy, numba and moderngl
 	$(BIN)/python -m bench

@@ -114,8 +114,10 @@ def exhaustive(
     starts = range(start, end + 1, _SLICE * stride)
     items = [_Piece(work, first, min(end, first + (_SLICE - 1) * stride), stride, first > start) for first in starts]
     parts: dict[int, Exhaustive] = {}
-    for number_, part in jobs.run(_work, items, scheduler=scheduler, workers=workers):
-        parts[number_] = part
+    alone = len(items) == 1 and scheduler is None  # not worth a process
+    done = enumerate(map(_work, items)) if alone else jobs.run(_work, items, scheduler=scheduler, workers=workers)
+    for k, part in done:
+        parts[k] = part
         progress(len(parts) / len(items))
     total = Exhaustive()
     for k in range(len(items)):
