@@ -77,7 +77,7 @@ def array(number: Numeric, shape: tuple[int, ...], value: Any, name: str, kind: 
 
 def a(kind: Type) -> str:
     """The name of a type after its article."""
-    return f"{'an' if str(kind)[0] in 'aeio' else 'a'} {kind}"
+    return f"{'an' if str(kind)[0].lower() in 'aeio' else 'a'} {kind}"
 
 
 def counted(number: int, what: str) -> str:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from . import results
+from .arguments import counted
 from .errors import CallError
 from .evaluation import Evaluation, Leaf
 from .signature import Signature
@@ -155,7 +156,7 @@ def _apart(given: _Input, whole: Sequence[Any]) -> _Input:
 
 def _check_out(signature: Signature, whole: Sequence[Any], wanted: Sequence[tuple[tuple[int, ...], np.dtype]]) -> None:
     if len(whole) != len(wanted):
-        raise CallError(f"out: {signature} yields {len(wanted)} arrays, got {len(whole)}", *signature.origin)
+        raise CallError(f"out: {signature} yields {counted(len(wanted), 'array')}, got {len(whole)}", *signature.origin)
     for array, (shape, dtype) in zip(whole, wanted, strict=True):
         if not isinstance(array, np.ndarray):
             raise CallError(f"out is an array of shape {shape}, got {type(array).__name__}", *signature.origin)

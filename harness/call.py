@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from . import library, overloads
-from .errors import CallError, did_you_mean
+from .errors import CallError, among
 from .function import Function, known_mode
 
 
@@ -49,7 +49,7 @@ class Shader:
         return Shader(self._library, mode)
 
     def __getattr__(self, name: str) -> Function:
-        if name.startswith("__") or name == "_functions":  # the latter when Python's own tools copy what is not made
+        if name.startswith("__"):  # what Python's own tools ask for
             raise AttributeError(name)
         return self[name]
 
@@ -57,9 +57,8 @@ class Shader:
         plain = overloads.named(name)
         if plain in self._functions:
             return self._functions[plain][name] if "(" in name else self._functions[plain]
-        hint = did_you_mean(plain, self._functions)
-        there = ", ".join(sorted(self._functions)) or "none at all"
-        raise _NoFunctionError(f"no function {plain}{hint}; there are: {there}", self._library.path)
+        message = f"no function {plain}{among(plain, self._functions)}"
+        raise _NoFunctionError(message, self._library.path)
 
     def __iter__(self):
         return iter(self._functions.values())

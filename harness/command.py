@@ -47,9 +47,12 @@ def single(chosen: Chosen, index: int | tuple[int, ...] | None) -> list[tuple[st
     if index is None and batch:
         message = f"{signature.name} is given a batch {batch}: say by an index which evaluation is meant"
         raise CallError(message, *signature.origin)
+    place = index if index is not None else ()
     try:
-        place = np.unravel_index(index, batch) if isinstance(index, int | np.integer) and batch else index or ()
-        one = iter([np.broadcast_to(array, batch + leaf.type.shape)[tuple(place)] for leaf, array in given])
+        place = place if isinstance(place, tuple) else np.unravel_index(place, batch or (1,))[: len(batch)]
+        if len(place) != len(batch):
+            raise IndexError
+        one = iter([np.broadcast_to(array, batch + leaf.type.shape)[place] for leaf, array in given])
     except (IndexError, ValueError):
         raise CallError(f"no element {index} in a batch {batch}", *signature.origin) from None
     return [pair for p in signature.inputs for pair in _pairs(p.type, p.name, one)]

@@ -51,3 +51,9 @@ def did_you_mean(name: str, there: Iterable[str]) -> str:
     by_case = {known.lower(): known for known in there}
     near = get_close_matches(name.lower(), by_case, 1)
     return f"; did you mean {by_case[near[0]]}?" if near else ""
+
+
+def among(name: str, there: Iterable[str]) -> str:
+    """The same, with the names that there are."""
+    hint = did_you_mean(name, there)
+    return f"{hint}{' There' if hint else '; there'} are: {', '.join(there) or 'none at all'}"

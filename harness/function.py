@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import batches, overloads
-from .errors import CallError, HarnessError, did_you_mean
+from .errors import CallError, HarnessError, among
 from .evaluation import MODES, Evaluation
 from .glsl import Source
 from .library import Library
@@ -22,8 +22,7 @@ if TYPE_CHECKING:  # what few callers need is loaded when they do
 def known_mode(mode: str) -> str:
     """The mode itself. CallError lists those that there are."""
     if mode not in MODES:
-        hint = did_you_mean(str(mode), MODES)
-        raise CallError(f"no mode {mode!r}{hint}; there are: {', '.join(MODES)}")
+        raise CallError(f"no mode {mode!r}{among(str(mode), MODES)}")
     return mode
 
 

@@ -48,7 +48,7 @@ def choose(overloads: Sequence[Signature], args: Sequence, kwargs: Mapping[str, 
     if fitting:
         listed = "".join(f"\n    {fit.signature}" for fit in fitting)
         example = key(fitting[0].signature)
-        message = f'more than one overload fits these arguments; choose one, as in ["{example}"]; there are:{listed}'
+        message = f'more than one overload fits these arguments; choose one by shader["{example}"]; there are:{listed}'
     else:
         listed = "".join(f"\n    {signature}: {message}" for signature, message in errors)
         message = f"no overload fits these arguments; there are:{listed}"
@@ -79,13 +79,13 @@ def select(overloads: Sequence[Signature], text: str, path: str) -> Signature:
     raise CallError(f"no overload {text.strip()}; there are:{listed}", path)
 
 
-def _parameters(text: str) -> list[str]:
-    """The types in the brackets of a signature, arrays as in ``float[3]``."""
-    inside = text.partition("(")[2].rpartition(")")[0]
+def _parameters(text: str) -> list[str] | None:
+    """The types in the brackets of a signature, arrays as in ``float[3]``; None where there are no brackets."""
+    inside = re.search(r"\((.*)\)\s*$", text)
     types = []
-    for parameter in inside.split(","):
+    for parameter in inside[1].split(",") if inside else ():
         words = [word for word in re.findall(r"\w+|\[\s*\w*\s*\]", parameter) if word not in _QUALIFIERS]
         after_type = next((k for k, word in enumerate(words[1:], 1) if word[0] != "["), len(words))
         lengths = words[after_type + 1 :] + words[1:after_type]  # of `float[2] x[3]` the outer is 3
         types.append("".join([*words[:1], *("".join(length.split()) for length in lengths)]))
-    return [] if types in ([""], ["void"]) else types
+    return None if not inside else [] if types in ([""], ["void"]) else types

@@ -12,7 +12,7 @@ import numpy as np
 
 from .signature import Array, Numeric, Signature, Struct, Type
 
-_SHOWN = 6  # numbers of an array that a repr shows all of
+_SHOWN = 4  # the length of a dimension that a repr shows all of: vectors and matrices are shown whole
 
 
 def shaped(signature: Signature, outputs: Sequence[Sequence[np.ndarray]], batch: tuple[int, ...]) -> Any:
@@ -80,8 +80,14 @@ def _readable(value: Any) -> str:
 def _short(value: Any) -> str:
     if isinstance(value, tuple):
         return repr(value) if hasattr(value, "_fields") else f"({', '.join(map(_short, value))})"
-    if not np.ndim(value):
-        return str(value)
-    text = np.array2string(value, separator=", ", threshold=_SHOWN, edgeitems=1, max_line_width=10**6)
-    text = " ".join(text.split())
-    return text if value.size <= _SHOWN else f"{text} {value.shape}"
+    text = _ends(np.asarray(value))
+    return f"{text} {value.shape}" if "..." in text else text
+
+
+def _ends(value: np.ndarray) -> str:
+    """The numbers of an array, of long dimensions only the first and the last."""
+    if not value.ndim:
+        return str(value[()])
+    if len(value) > _SHOWN:
+        return f"[{_ends(value[0])}, ..., {_ends(value[-1])}]"
+    return f"[{', '.join(map(_ends, value))}]"

@@ -49,7 +49,10 @@ def _written(value: np.ndarray) -> str:
 
 
 def number(value: Any) -> str:
-    """The shortest decimals of a float32 that give it back, in hexadecimal where there are none."""
+    """The shortest decimals that give a float32 back.
+
+    In hexadecimal where those of numpy do not, because reading rounds them to float64 first: 7.038531e-26 is one.
+    """
     with np.errstate(over="ignore"):
         single = np.float32(value)
         text = np.format_float_positional(single, trim="-") if 1e-4 <= abs(single) < 1e16 else str(single)

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import tempfile
+
 import numpy as np
 import pytest
 from glsl_values import EXTREMES, assert_same_bits
+
+from harness.evaluation import Evaluation
 
 # ---- How an array lies in memory -------------------------------------------------------------------------------------
 
@@ -18,6 +22,24 @@ def read_only(x):
     x = x.copy()
     x.flags.writeable = False
     return x
+
+
+class Frame:
+    """What gives its numbers to numpy alone, as the columns of pandas do."""
+
+    def __init__(self, x):
+        self.x = x
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.x, dtype)
+
+
+def mapped(x):
+    """A file in memory, read-only."""
+    with tempfile.NamedTemporaryFile() as file:
+        np.save(file, x)
+        file.flush()
+        return np.load(file.name, mmap_mode="r")
 
 
 LAYOUTS = {
@@ -38,6 +60,9 @@ LAYOUTS = {
     "int64": lambda x: x.astype(np.int64),
     "uint8": lambda x: x.astype(np.uint8),
     "bool": lambda x: x.astype(bool),
+    "what has __array__": Frame,
+    "memory-mapped": mapped,
+    "tuples": lambda x: tuple(map(tuple, x)),
     "subclass": lambda x: np.ma.masked_array(x),
 }
 
@@ -66,6 +91,17 @@ def test_big_endian_numbers_keep_their_value(shared, dtype):
 def test_big_endian_nan_keep_their_bits(shared):
     x = EXTREMES["float"]
     assert_same_bits(shared["as-written"].id(x.astype(">f4")), x)
+
+
+def test_nothing_that_is_repeated_is_written_out(shared, monkeypatch):
+    """One value for a whole batch goes to GL as one value, however it is repeated."""
+    given = []
+    run = Evaluation.run
+    monkeypatch.setattr(Evaluation, "run", lambda self, flat, count: given.append(flat) or run(self, flat, count))
+    x = np.arange(6.0).reshape(2, 3)
+    for one in (7, [[7]], np.broadcast_to(7.0, (2, 3)), np.full((2, 1), 7)[:1]):
+        np.testing.assert_array_equal(shared["as-written"].sum(x, one), x + 7)
+        assert [len(array) for array in given[-1].values()] == [6, 1]
 
 
 def test_no_input_is_modified(functions):

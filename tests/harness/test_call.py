@@ -1,6 +1,9 @@
-"""Functions of a file: those of its includes, behind its macros, of an entry point."""
+"""The functions of a file, by name: those of its includes, behind its macros, of an entry point; and their list."""
 
 from __future__ import annotations
+
+import copy
+import re
 
 import numpy as np
 import pytest
@@ -73,3 +76,42 @@ def test_globals_start_anew_for_every_element(functions, mode):
 def test_modes_are_apart(shared):
     assert shared["as-written"].with_mode("precise").sum(1, 2) == 3
     assert shared["as-written"].sum(1, 2) == 3
+
+
+# ---- The list of them ------------------------------------------------------------------------------------------------
+
+LISTED = "float f(float x) { return x; } float f(vec2 x) { return x.x; } float _g(float x) { return x; }"
+
+
+def test_a_function_by_attribute_is_that_by_index(shared):
+    assert shared["as-written"].sum is shared["as-written"]["sum"]
+
+
+def test_functions_are_listed(functions):
+    made = functions(LISTED)
+    assert {"f", "_g", "with_mode"} <= set(dir(made))
+    assert [f.__name__ for f in made] == ["f", "_g"]
+    assert re.fullmatch(r"<shader \S*test\.glsl: f, _g>", repr(made))
+    assert repr(made.f) == "<GLSL float f(float x); float f(vec2 x)>"
+
+
+def test_keys_are_completed_to_functions_and_to_overloads(functions):
+    """IPython asks for them after made[\"."""
+    made = functions(LISTED)
+    keys = made._ipython_key_completions_()
+    assert keys == ["f", "_g", "f(float)", "f(vec2)", "_g(float)"]
+    assert all(made[key] for key in keys)
+
+
+def test_a_name_that_begins_with_an_underscore_is_one(functions):
+    assert functions(LISTED)._g(2) == 2
+
+
+def test_it_can_be_copied(functions):
+    """Python's copies ask an object for attributes before it has any."""
+    assert copy.copy(functions(LISTED))._g(2) == 2
+
+
+def test_its_mode_is_told(functions):
+    made = functions(LISTED, mode="precise")
+    assert (made.mode, made.f.mode, made.with_mode("as-written").mode) == ("precise", "precise", "as-written")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -9,6 +10,9 @@ import sys
 import numpy as np
 import pytest
 from PIL import Image
+
+from harness import HarnessError, cli
+from harness.evaluation import MODES
 
 
 def harness(*arguments, cwd=None):
@@ -105,6 +109,64 @@ def test_an_unknown_mode_lists_the_modes(root):
     assert_one_clear_message(done, "fast", "as-written", "precise")
 
 
+def test_call_takes_hexadecimal_numbers_and_those_that_are_none(tmp_path):
+    (tmp_path / "f.glsl").write_text("vec4 f(vec4 v) { return v; }\n")
+    done = harness("call", "f.glsl", "f", "v=0x1.8p-3,-0.0,nan,-inf", cwd=tmp_path)
+    assert done.stdout == "[0.1875, -0.0, nan, -inf]\n"
+
+
+def here(*arguments) -> None:
+    """The command in this process, where what it refuses is an exception."""
+    options = cli._parser().parse_args(list(map(str, arguments)))
+    options.run(options)
+
+
+def test_call_takes_an_overload_and_the_members_of_arrays_and_uniforms(tmp_path, capsys):
+    text = "struct L { float a; vec2 b; };\nuniform L light;\nfloat f(float x) { return x; }\n"
+    text += "float f(L l[2], float x) { return l[1].b.y + light.b.x * x + light.a; }\n"
+    (tmp_path / "f.glsl").write_text(text)
+    arguments = ["l[1].b=3,4", "l[1].a=0", "l[0].a=0", "l[0].b=0,0", "x=2", "light.b=0.5,0", "light.a=0"]
+    here("call", tmp_path / "f.glsl", "f(L[2], float)", *arguments)
+    assert capsys.readouterr().out == "5.0\n"
+
+
+def test_call_compares_all_modes(root, capsys):
+    here("call", root / "shaders/brdf.glsl", "D_GGX", "NoH=1,0.5", "alpha=0.25", "--mode", "all")
+    heading, columns, *rows = capsys.readouterr().out.rstrip("\n").split("\n")
+    assert re.fullmatch(
+        r"float D_GGX\(float NoH, float alpha\)    \[\S*shaders/brdf.glsl:\d+\], 2 evaluations", heading
+    )
+    assert columns.split() == ["mode", "ulp", "absolute", "largest", "at"]
+    assert [row.split()[0] for row in rows] == list(MODES)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["missing", "x=1"], "f.glsl: no function missing; there are: f, g"),
+        (["ff", "x=1"], "f.glsl: no function ff; did you mean f? There are: f, g"),
+        (["f(vec2)", "x=1"], "f.glsl: no overload f(vec2); there are:\n    float f(float x)"),
+        (["f"], "f.glsl:1: f lacks x; it is float f(float x)"),
+        (["f", "x=1", "y=2"], "f.glsl:1: float f(float x) has no parameter y and reads no such uniform"),
+        (["f", "x=1", "x=2"], "x is given twice"),
+        (["f", "x=1", "x.a=2"], "x is given both as a value and by its members"),
+        (["f", "x=1..5"], "x=1..5: '1..5' is no number, vector such as 1,2,3, true or false"),
+        (["f", "x"], "'x' is not an argument of the form NAME=VALUE"),
+        (["g", "k=nan"], "f.glsl:2: k is an int, got numbers of type float64 (nan among them); it is int g(int k)"),
+        (
+            ["f", "x=1", "--mode", "presice"],
+            "no mode 'presice'; did you mean precise? There are: as-written, precise",
+        ),
+    ],
+)
+def test_what_is_wrong_in_a_call_is_told_in_full(tmp_path, monkeypatch, arguments, message):
+    (tmp_path / "f.glsl").write_text("float f(float x) { return x; }\nint g(int k) { return k; }\n")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(HarnessError) as caught:
+        here("call", "f.glsl", *arguments)
+    assert str(caught.value) == message
+
+
 def test_a_syntax_error_in_an_include_names_that_file_and_line(tmp_path):
     (tmp_path / "inner.glsl").write_text("float one() { return 1.0; }\nfloat two() { return 1.0 +; }\n")
     (tmp_path / "outer.glsl").write_text(
@@ -112,6 +174,30 @@ def test_a_syntax_error_in_an_include_names_that_file_and_line(tmp_path):
     )
     done = harness("call", "outer.glsl", "three", cwd=tmp_path)
     assert_one_clear_message(done, "inner.glsl:2:", "float two() { return 1.0 +; }")
+
+
+def test_a_syntax_error_within_a_macro_names_the_line_that_uses_it(tmp_path):
+    (tmp_path / "f.glsl").write_text("#define BAD missing\n\nfloat f() { return BAD; }\n")
+    done = harness("call", "f.glsl", "f", cwd=tmp_path)
+    assert_one_clear_message(done, "f.glsl:3: 'missing' : undeclared identifier\n    float f() { return BAD; }\n")
+
+
+# ---- functions -------------------------------------------------------------------------------------------------------
+
+
+def test_functions_are_listed_with_their_comments(tmp_path, monkeypatch, capsys):
+    (tmp_path / "inner.glsl").write_text("// Inner,\n//   indented.\nfloat g(float x) { return x; }\n")
+    (tmp_path / "f.glsl").write_text('#include "inner.glsl"\nfloat f(vec2 v, out int k) { k = 1; return K; }\n')
+    monkeypatch.chdir(tmp_path)
+    here("functions", "f.glsl", "-D", "K=1.0")
+    assert capsys.readouterr().out == (
+        "float g(float x)    [inner.glsl:3]\n    Inner,\n      indented.\nfloat f(vec2 v, out int k)    [f.glsl:2]\n"
+    )
+
+
+def test_the_functions_of_a_file_that_does_not_compile_are_not_listed(tmp_path):
+    (tmp_path / "f.glsl").write_text("float f(vec2 v) { return K; }\n")
+    assert_one_clear_message(harness("functions", "f.glsl", cwd=tmp_path), "f.glsl:1: 'K' : undeclared")
 
 
 # ---- render ----------------------------------------------------------------------------------------------------------

@@ -192,7 +192,7 @@ CALLS = {
     "text": ("f", lambda f: f("abc", 1), "v is a vec3, got numbers of type <U3"),
     "nothing given": ("f", lambda f: f(None, 1), "v is a vec3, got None"),
     "complex": ("f", lambda f: f([1j, 2, 3], 1), "got numbers of type complex128"),
-    "float for int": ("chosen", lambda f: f(1.5, 1, True), "i is an int, got numbers of type float64"),
+    "float for int": ("chosen", lambda f: f(1.5, 1, True), "i is an int, got numbers of type float64; it is"),
     "int for bool": ("chosen", lambda f: f(1, 1, 1), "b is a bool, got numbers of type int64"),
     "bool for int": ("chosen", lambda f: f(True, 1, True), "i is an int, got numbers of type bool"),
     "int too large": ("chosen", lambda f: f(2**31, 1, True), "i is an int: -2147483648 ... 2147483647"),
@@ -235,10 +235,96 @@ def test_a_wrong_call_says_what_was_expected_and_where_it_is(called, call):
     assert str(error) == f"{error.file}:{error.line}: {error.message}"
 
 
+#: call -> the whole message, with the place
+EXACT = {
+    "no such function": (
+        lambda s: s.sampledd,
+        "{file}: no function sampledd; did you mean sampled? There are: "
+        "f, lit, chosen, gained, many, of_array, of_lights, nothing, sampled",
+    ),
+    "no such function, by its case": (
+        lambda s: s["GAINED"],
+        "{file}: no function GAINED; did you mean gained? There are: "
+        "f, lit, chosen, gained, many, of_array, of_lights, nothing, sampled",
+    ),
+    "too many arguments": (
+        lambda s: s.gained(1, 2, gain=3),
+        "{file}:7: gained takes 1 argument, got 2; it is float gained(float x)",
+    ),
+    "too few arguments": (
+        lambda s: s.chosen(1),
+        "{file}:6: chosen lacks u, b; it is float chosen(int i, uint u, bool b)",
+    ),
+    "an argument under another name": (
+        lambda s: s.lit(ligth=LIGHT),
+        "{file}:5: lit lacks light, got ligth; did you mean light?; it is float lit(Light light)",
+    ),
+    "a scalar for a vector": (
+        lambda s: s.f(1, 1),
+        "{file}:4: v is a vec3: an array of shape (..., 3), got (); it is float f(vec3 v, float s)",
+    ),
+    "a wrong length": (
+        lambda s: s.f(np.ones((5, 4)), 1),
+        "{file}:4: v is a vec3: an array of shape (..., 3), got (5, 4); it is float f(vec3 v, float s)",
+    ),
+    "a wrong type": (
+        lambda s: s.f([1, 2, 3], "x"),
+        "{file}:4: s is a float, got numbers of type <U1; it is float f(vec3 v, float s)",
+    ),
+    "an object": (
+        lambda s: s.f([1, 2, 3], object()),
+        "{file}:4: s is a float, got an object of type object; it is float f(vec3 v, float s)",
+    ),
+    "an iterator": (
+        lambda s: s.f([1, 2, 3], iter([1])),
+        "{file}:4: s is a float, got an iterator: stream() takes one, chunk by chunk; it is float f(vec3 v, float s)",
+    ),
+    "NaN for an int": (
+        lambda s: s.chosen([1, np.nan], 1, True),
+        "{file}:6: i is an int, got numbers of type float64 (nan among them); "
+        "it is float chosen(int i, uint u, bool b)",
+    ),
+    "shapes that do not go together": (
+        lambda s: s.f(np.ones((4, 3)), np.ones((2, 3))),
+        "{file}:4: the arguments do not broadcast: v (4,), s (2, 3); it is float f(vec3 v, float s)",
+    ),
+    "members that do not go together": (
+        lambda s: s.lit({"direction": np.ones((4, 3)), "power": [1, 2]}),
+        "{file}:5: the arguments do not broadcast: light.direction (4,), light.power (2,); "
+        "it is float lit(Light light)",
+    ),
+    "an unknown keyword": (
+        lambda s: s.gained(1, gian=1),
+        "{file}:7: float gained(float x) has no parameter gian and reads no such uniform; did you mean gain?",
+    ),
+    "a missing uniform": (
+        lambda s: s.gained(1),
+        "{file}:7: gained reads the uniform float gain: give it by its name",
+    ),
+    "a wrong member": (
+        lambda s: s.lit({"direction": [0, 0, 1], "powr": 2}),
+        "{file}:5: light is a Light: a dict of direction, power, got direction, powr; did you mean power?; "
+        "it is float lit(Light light)",
+    ),
+    "an unknown mode": (
+        lambda s: s.f.with_mode("precice"),
+        "no mode 'precice'; did you mean precise? There are: as-written, precise",
+    ),
+}
+
+
+@pytest.mark.parametrize("fault", EXACT)
+def test_what_a_wrong_call_is_told(called, fault):
+    make, message = EXACT[fault]
+    error = refusal(lambda: make(called))
+    assert isinstance(error, CallError)
+    assert str(error) == message.format(file=error.file)
+
+
 def test_an_unknown_function_lists_those_that_there_are(called):
     error = refusal(lambda: called.g)
     assert error.message == (
-        "no function g; there are: chosen, f, gained, lit, many, nothing, of_array, of_lights, sampled"
+        "no function g; there are: f, lit, chosen, gained, many, of_array, of_lights, nothing, sampled"
     )
     assert str(error).startswith(error.file)
 
@@ -269,7 +355,7 @@ def test_a_file_without_functions_says_so(write):
         ),
         (
             lambda s: s.many(np.ones(3)),  # a vec3, or three floats
-            'many: more than one overload fits these arguments; choose one, as in ["many(float)"]; there are:'
+            'many: more than one overload fits these arguments; choose one by shader["many(float)"]; there are:'
             "\n    float many(float x)\n    float many(vec3 x)",
         ),
     ],

@@ -74,10 +74,77 @@ def test_arguments_by_keyword_in_any_order(shared):
     np.testing.assert_array_equal(shared["as-written"].scaled([1, 2, 3], s=2), [2, 4, 6])
 
 
-def test_a_function_by_attribute_is_that_by_index(shared):
-    assert shared["as-written"].sum is shared["as-written"]["sum"]
+# ---- By signature ----------------------------------------------------------------------------------------------------
+
+SIGNED = """#version 430
+struct S { float x; };
+int f() { return 1; }
+int f(float x) { return 2; }
+int f(const in vec3 v, highp float s) { return 3; }
+int f(vec3 v, int s) { return 4; }
+int f(float x[3]) { return 5; }
+int f(float x[3][2]) { return 6; }
+int f(S s, out float x) { x = 1.0; return 7; }
+int g(float x) { return 8; }
+"""
 
 
-def test_functions_are_listed(overloads):
-    assert set("fghk") <= set(dir(overloads))
-    assert repr(overloads.k) == "<GLSL int k(float x); int k(float x, float u)>"
+@pytest.fixture(scope="module")
+def signed(tmp_path_factory):
+    path = tmp_path_factory.mktemp("signed") / "signed.glsl"
+    path.write_text(SIGNED)
+    return shader(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "which"),
+    [
+        ("f()", 0),
+        ("f(void)", 0),
+        ("f( )", 0),
+        ("f(float)", 1),
+        ("int f(float x)", 1),
+        ("  f (  in   float  y ) ", 1),
+        ("f(vec3, float)", 2),
+        ("f(vec3,float)", 2),
+        ("int f(const in vec3 normal, mediump float)", 2),
+        ("f(vec3, int)", 3),
+        ("f(float[3])", 4),
+        ("f(float x[3])", 4),
+        ("f(float [ 3 ] x)", 4),
+        ("f(float[3][2])", 5),
+        ("f(float x[3][2])", 5),
+        ("f(float[2] x[3])", 5),
+        ("f(S, out float)", 6),
+        ("f(S,float)", 6),
+    ],
+)
+def test_an_overload_is_selected_by_its_types(signed, text, which):
+    """Space, qualifiers, names of parameters and the returned type do not matter."""
+    assert signed[text].signatures == (signed.f.signatures[which],)
+    assert signed.f[text].signatures == (signed.f.signatures[which],)
+
+
+def test_what_shows_an_overload_selects_it(signed):
+    for signature in signed.f.signatures:
+        assert signed[str(signature)].signatures == (signature,)
+
+
+def test_a_selected_overload_is_called_where_the_arguments_fit_several(overloads):
+    x = np.ones((2, 2))
+    assert overloads["f(mat2)"](x) == 3
+    assert overloads["f(vec2)"](x).tolist() == [2, 2]
+    assert overloads.f["f(float)"].with_mode("precise")(x).tolist() == [[1, 1], [1, 1]]
+
+
+def test_a_function_alone_of_its_name_can_be_selected_too(signed):
+    assert signed["int g(float x)"](1) == 8
+
+
+@pytest.mark.parametrize("text", ["f(vec2)", "f(float, vec3)", "f(float[2])", "f(s)", "f(float"])
+def test_an_overload_that_is_not_there_is_refused_with_those_that_are(signed, text):
+    with pytest.raises(CallError) as caught:
+        signed[text]
+    listed = "".join(f"\n    {signature}" for signature in signed.f.signatures)
+    assert caught.value.message == f"no overload {text}; there are:{listed}"
+    assert caught.value.file.endswith("signed.glsl")

@@ -125,3 +125,41 @@ def test_a_parameter_hides_the_uniform_of_its_name(functions):
     made = functions("uniform float x; float f(float x) { return x; } float g() { return x; }")
     assert made.f(x=2) == 2
     assert made.g(x=3) == 3
+
+
+# ---- Values that the file gives --------------------------------------------------------------------------------------
+
+INITIALISED = """#version 430
+uniform float gain = 2.0, bare, power = 3.0;
+uniform vec3 tint = vec3(1, 2, 3);
+uniform float weights[2] = float[2](5.0, 7.0);
+const float K = 4.0; // no uniform, though it has a value
+uniform float after;
+float f(float x) { return gain * x; }
+float both(float x) { return gain * x + power * bare * K; }
+vec3 tinted(float x) { return tint * x; }
+float weighted(int k) { return weights[k]; }
+float last(float x) { return after * x; }
+"""
+
+
+def test_a_uniform_that_the_file_gives_a_value_has_it(functions, mode):
+    made = functions(INITIALISED, mode=mode)
+    assert made.f(3) == 6
+    assert made.both(3, bare=1) == 6 + 12
+    np.testing.assert_array_equal(made.tinted(2), [2, 4, 6])
+    np.testing.assert_array_equal(made.weighted([0, 1]), [5, 7])
+
+
+def test_a_call_that_gives_another_value_does_not_change_the_files(functions, mode):
+    made = functions(INITIALISED, mode=mode)
+    assert [made.f(3), made.f(3, gain=5), made.f(3), made.f(3, gain=7), made.f(3, gain=5)] == [6, 15, 6, 21, 15]
+    assert made.both(3, bare=1, gain=1) == 3 + 12
+    assert made.both(3, bare=1, power=1) == 6 + 4
+    assert made.both(3, bare=1) == 6 + 12
+
+
+@pytest.mark.parametrize(("name", "lacks"), [("both", "bare"), ("last", "after")])
+def test_a_uniform_beside_those_with_a_value_has_none(functions, name, lacks):
+    with pytest.raises(CallError, match=f"{name} reads the uniform float {lacks}: give it by its name"):
+        functions(INITIALISED)[name](1)
