@@ -150,7 +150,10 @@ def _paired(got: Any, want: Any) -> Iterator[_Sides]:
 
 def _numbers(values: Any, what: str) -> np.ndarray:
     try:
-        return np.asarray(values, np.float64)
+        array = np.asarray(values)
+        if array.dtype.kind == "c":
+            raise TypeError("complex numbers")
+        return array.astype(np.float64)
     except (TypeError, ValueError) as error:
         raise CompareError(f"{what} is no array of real numbers: {error}") from None
 

@@ -120,6 +120,10 @@ class elementwise:  # noqa: N801
     def __init__(self, reference: Callable):
         self.reference = reference
 
+    def __call__(self, *arguments: Any, **uniforms: Any) -> Any:
+        """The reference at one input."""
+        return self.reference(*arguments, **uniforms)
+
     def over(self, arguments: Sequence[Any], shape: tuple[int, ...], uniforms: Mapping[str, Any]) -> np.ndarray:
         """The reference at each of the inputs: an array (*shape, ...)."""
         each = [self.reference(*(_one(a, index) for a in arguments), **uniforms) for index in np.ndindex(shape)]
