@@ -110,7 +110,10 @@ def exhaustive(
     if not (np.isfinite(low) and np.isfinite(high) and start <= end and stride >= 1):
         raise DomainError(f"every {stride}-th float from {low} to {high}: there are none")
     ends = _results(f, np.float32([low, high])).astype(np.float64)
-    work = pickle.dumps((f, reference, flush_denormals, float(np.sign(ends[1] - ends[0]))))
+    try:
+        work = pickle.dumps((f, reference, flush_denormals, float(np.sign(ends[1] - ends[0]))))
+    except (pickle.PicklingError, AttributeError) as error:
+        raise CompareError(f"the reference has to be a function of a module, for other processes: {error}") from None
     starts = range(start, end + 1, _SLICE * stride)
     items = [_Piece(work, first, min(end, first + (_SLICE - 1) * stride), stride, first > start) for first in starts]
     parts: dict[int, Exhaustive] = {}

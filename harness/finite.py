@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,6 +25,7 @@ def assert_finite(
     *,
     nonnegative: bool = False,
     intermediates: bool = True,
+    may_overflow: Collection[str] = (),
 ) -> None:
     """Fails when a result of ``f`` is NaN or infinite, or is negative with ``nonnegative``, at any of ``n`` inputs.
 
@@ -32,15 +33,16 @@ def assert_finite(
 
     ``domain`` says where they come from (harness/domain.py): its edges in every combination, or ``n``/2 of those, and
     others by chance; given values alone, each row once. With ``intermediates`` every local, parameter and returned
-    value on the way has to be finite as well: max(NaN, 0) is 0, and hides what went wrong. The message names the value,
-    its file and line, and the input, and has the command that repeats it. AssertionError, or DomainError.
+    value on the way has to be finite as well: max(NaN, 0) is 0, and hides what went wrong. Those named in
+    ``may_overflow`` may be infinite, though not NaN: what is meant to be cut off. The message names the value, its file
+    and line, and the input, and has the command that repeats it. AssertionError, or DomainError.
     """
     batch = inputs_of(f, domain, n, seed)
     returned = results(f(**batch.arguments()))
     _check_results(f, batch, returned, nonnegative, intermediates)
     if intermediates:
         for first in range(0, batch.size, _TRACED):
-            _check_locals(f, batch.rows(slice(first, first + _TRACED)))
+            _check_locals(f, batch.rows(slice(first, first + _TRACED)), may_overflow)
 
 
 def _wrong(values: np.ndarray, nonnegative: bool, dimensions: int = 1) -> np.ndarray:
@@ -73,10 +75,11 @@ def _first_local(f: Function, element: Batch) -> str | None:
     return None
 
 
-def _check_locals(f: Function, batch: Batch) -> None:
+def _check_locals(f: Function, batch: Batch, may_overflow: Collection[str]) -> None:
     for local in f.trace(**batch.arguments()):
         values = np.asarray(local.values)
-        wrong = _wrong(values, False) & local.executed
+        suspect = np.where(np.isinf(values), 0.0, values) if local.name in may_overflow else values
+        wrong = _wrong(suspect, False) & local.executed
         if wrong.any():
             index = int(np.argmax(wrong))
             message = (

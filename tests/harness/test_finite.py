@@ -83,6 +83,21 @@ def test_a_nan_that_the_result_hides_is_found_with_its_line(functions):
     assert_finite(f, {"x": "[0.5,1]"}, n=1000)
 
 
+def test_what_may_overflow_may_not_be_nan(functions):
+    def steps(x):
+        y = np.where(x == 1, np.float32(np.inf), 1)
+        z = np.where(x == 0, np.float32(np.nan), y)
+        return [Local("y", "a.glsl", 8, y, np.ones(x.shape, bool)), Local("z", "a.glsl", 9, z, np.ones(x.shape, bool))]
+
+    f = traced(functions(TEXT).square, steps)
+    assert_finite(f, {"x": "(0,1)"}, n=1000)
+    assert_finite(f, {"x": "(0,1]"}, n=1000, may_overflow=("y", "z"))
+    with pytest.raises(AssertionError, match="y is not finite"):
+        assert_finite(f, {"x": "(0,1]"}, n=1000, may_overflow=("z",))
+    with pytest.raises(AssertionError, match="z is not finite .* nan"):
+        assert_finite(f, {"x": "[0,1]"}, n=1000, may_overflow=("y", "z"))
+
+
 def test_what_was_not_executed_is_not_asked_for(functions):
     def branch(x):
         return [Local("r", "a.glsl", 8, np.full(x.shape, np.nan, np.float32), x < 0)]
