@@ -183,7 +183,7 @@ def test_the_written_test_is_formatted_fails_and_passes_when_mended(glsl, capfd,
         done = subprocess.run(ruff, capture_output=True, text=True)
         assert done.returncode == 0, f"{done.stdout}\n{written.read_text()}"
     assert _run(written) == 1
-    mended = {"product": "dot(a, b)", "scaled": "x"}[function]
+    mended = {"product": "dot(a, b)", "scaled": "0.25"}[function]
     lines = glsl.read_text().splitlines()
     lines = [line[: line.index("{")] + f"{{ return {mended}; }}" if f" {function}(" in line else line for line in lines]
     glsl.write_text("\n".join(lines))
