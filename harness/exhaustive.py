@@ -101,7 +101,7 @@ def exhaustive(
 
     ``f`` takes one float, or one vector, whose components it treats alike: each then carries another value. What it
     returns has the same shape. ``reference``, a function of a module, gets the same values as a float64 array (n,); it
-    may be left out. 0 is right for what is below the smallest normal number, unless ``flush_denormals=False``. The
+    may be left out. 0 is right for what is below the smallest normal number or about it, unless ``flush_denormals=False``. The
     values stream through ``workers`` processes, or the Dask cluster at ``scheduler``; any number gives the same.
     DomainError, CompareError.
     """
@@ -230,7 +230,7 @@ def _errors(values: np.ndarray, got: np.ndarray, reference: Callable | None, flu
         off = np.abs(got - want)
         ulps = off / _spacing(want)
     if flush_denormals:
-        ulps[(got == 0) & (np.abs(want) < PRECISIONS["float32"].smallest_normal)] = 0
+        ulps[(got == 0) & (np.abs(want) < PRECISIONS["float32"].flushed_below)] = 0
     special = np.flatnonzero(~np.isfinite(ulps))
     ulps[special] = ulp_difference(got[special], want[special])
     off[special] = np.where(np.isfinite(ulps[special]), off[special], ulps[special])

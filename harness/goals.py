@@ -77,7 +77,7 @@ class Goal:
         return _worst(np.where(np.isnan(trial.got), -np.inf, 0.0 - trial.got))
 
     def _ulp(self, trial: Trial) -> np.ndarray:
-        flushed = (trial.got == 0) & (np.abs(trial.double) < PRECISIONS["float32"].smallest_normal)
+        flushed = (trial.got == 0) & (np.abs(trial.double) < PRECISIONS["float32"].flushed_below)
         return _worst(np.where(flushed, 0.0, ulp_difference(trial.got, trial.double)))
 
     def _monotone(self, trial: Trial) -> np.ndarray:

@@ -21,6 +21,11 @@ class Precision:
         """Below it numbers are denormal."""
         return 2.0 ** (self.smallest + self.digits - 1)
 
+    @property
+    def flushed_below(self) -> float:
+        """Below it a result that is a little off, as pow() is, may be denormal and so 0: smallest normal + 1/8192."""
+        return self.smallest_normal * (1 + 2.0**-13)
+
 
 PRECISIONS = {"float16": Precision(11, -24), "float32": Precision(24, -149), "float64": Precision(53, -1074)}
 

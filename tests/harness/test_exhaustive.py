@@ -151,3 +151,12 @@ def test_the_command_tries_every_float(tmp_path, capfd):
     assert "not finite: 1, first at 1.0000003576278687" in capfd.readouterr().out
     words[2] = "id"
     assert main(words) == 0
+
+
+def just_above_the_smallest_normal(x):
+    return np.full(x.shape, 2.0**-126 * (1 + 2.0**-20))
+
+
+def test_a_result_may_be_flushed_that_is_a_little_below_what_is_right(f):
+    """A pow() that is a few ulps low gives a denormal, so 0, where the right value is still normal."""
+    assert exhaustive(f.steps, 0.0, 2.0**-140, just_above_the_smallest_normal).ulp.size == 0
