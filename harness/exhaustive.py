@@ -102,8 +102,8 @@ def exhaustive(
     ``f`` takes one float, or one vector, whose components it treats alike: each then carries another value. What it
     returns has the same shape. ``reference``, a function of a module, gets the same values as a float64 array (n,); it
     may be left out. 0 is right for what is below the smallest normal number or just above, unless
-    ``flush_denormals=False``. The values stream through ``workers`` processes, or the Dask cluster at ``scheduler``; any
-    number gives the same. DomainError, CompareError.
+    ``flush_denormals=False``. The values stream through ``workers`` processes, or the Dask cluster at ``scheduler``;
+    any number of them gives the same. DomainError, CompareError.
     """
     _width(f)
     start, end = map(int, ordered(np.float32([low, high])))
