@@ -44,17 +44,19 @@ PIECEWISE = {"SRGB_DECODE": "SRGB_PIECEWISE"}
 CUBIC = {"SRGB_DECODE": "SRGB_CUBIC"}
 POW = {"BRDF_F": "F_POW"}
 
+#: a quarter above what was measured where pow() takes part, which differs from one maker's processor to the other's
 CHECKS = {
     "sRGB decode, by the standard": Check(
-        "color.glsl", "srgb_to_linear", "srgb_decode", ulp=100, absolute=1e-6, back=100, defines=PIECEWISE
+        "color.glsl", "srgb_to_linear", "srgb_decode", ulp=20, absolute=7e-7, back=0, defines=PIECEWISE
     ),
-    "sRGB decode, c^2.2": Check("color.glsl", "srgb_to_linear", "power_decode", ulp=200, absolute=1e-6, back=100),
+    "sRGB decode, c^2.2": Check("color.glsl", "srgb_to_linear", "power_decode", ulp=150, absolute=5e-7, back=0),
     "sRGB decode, cubic": Check(
-        "color.glsl", "srgb_to_linear", "cubic_decode", ulp=4, absolute=2e-7, back=0, defines=CUBIC
+        "color.glsl", "srgb_to_linear", "cubic_decode", ulp=2.4, absolute=1.1e-7, back=0, defines=CUBIC
     ),
-    "sRGB encode": Check("color.glsl", "linear_to_srgb", "srgb_encode", ulp=100, absolute=1e-6, back=100),
-    "Schlick's weight": Check("brdf.glsl", "schlick_weight", "schlick_weight", ulp=100, absolute=1e-6, back=100),
+    # the standard's own two pieces do not meet: at 0.0031308 the curve goes back by 7 ulp, once
+    "sRGB encode": Check("color.glsl", "linear_to_srgb", "srgb_encode", ulp=14, absolute=3.5e-7, back=8),
+    "Schlick's weight": Check("brdf.glsl", "schlick_weight", "schlick_weight", ulp=6.9, absolute=2.7e-7, back=0),
     "Schlick's weight, pow": Check(
-        "brdf.glsl", "schlick_weight", "schlick_weight", ulp=100, absolute=1e-6, back=100, defines=POW
+        "brdf.glsl", "schlick_weight", "schlick_weight", ulp=110, absolute=1.1e-6, back=0, defines=POW
     ),
 }
