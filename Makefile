@@ -17,7 +17,7 @@ define install_extra
 @touch $@
 endef
 
-.PHONY: help render test test-conformance test-backends test-sanitize bench lint format build models textures clean
+.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive bench lint format build models textures clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -40,6 +40,9 @@ test-sanitize: $(VENV)/bin/python ## the C library under AddressSanitizer and UB
 	cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_BUILD_TYPE=Debug -DHARNESS_TESTS=ON -DHARNESS_SANITIZE=ON
 	cmake --build $(SANITIZED)
 	ctest --test-dir $(SANITIZED) --output-on-failure
+
+test-exhaustive: $(VENV)/.harness $(VENV)/.test ## functions of one float at every float of their domain (minutes)
+	$(BIN)/python -m pytest -rA --durations=0 tests/exhaustive/every_float.py
 
 bench: $(VENV)/.harness $(VENV)/.bench ## speed and memory, beside numpy, numba and moderngl
 	$(BIN)/python -m bench

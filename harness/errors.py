@@ -36,6 +36,14 @@ class NativeError(HarnessError):
     """The native library or the driver under it refuses; the message names the operation."""
 
 
+class CompareError(HarnessError, ValueError):
+    """A comparison that could not fail, or has no meaning: nothing to compare, shapes or tolerances that do not fit."""
+
+
+class DomainError(HarnessError, ValueError):
+    """Inputs are described by what is no domain, or does not suit the parameter."""
+
+
 def did_you_mean(name: str, there: Iterable[str]) -> str:
     """What a message about an unknown name ends with: the nearest of the names that there are, or nothing."""
     from difflib import get_close_matches  # errors alone pay for it

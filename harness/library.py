@@ -23,6 +23,10 @@ class Library:
     signatures: Sequence[Signature]
     compiled: dict[tuple, Any] = field(default_factory=dict)
 
+    def __getstate__(self):
+        """Without what was compiled: a worker process compiles for itself."""
+        return self.__dict__ | {"compiled": {}}
+
     @property
     def path(self) -> str:
         """The file, as a user likes to read it."""
