@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import math
 from collections import namedtuple
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -19,20 +19,46 @@ from .evaluation import MODES, Evaluation, Leaf, leaves
 from .native import Stage, gl_enums
 from .signature import DTYPES, Array, Numeric, Parameter, Signature, Struct, Type, signatures
 
+#: makes what evaluates a function in a mode, here or elsewhere
+Engine = Callable[[glsl.Source, Signature, str], Evaluation]
+
 
 def shader(
     path: str | Path,
     defines: Mapping[str, Any] | None = None,
     include_dirs: Sequence[str | Path] = (),
     mode: str = "as-written",
+    *,
+    isolated: bool = False,
+    time_limit: float | None = None,
+    memory_limit: int | None = None,
 ) -> Shader:
     """The functions of a GLSL file, callable by name.
 
     ``defines`` are macros, ``include_dirs`` the folders where includes are looked for, before the file's own. ``mode``
     is "as-written" or "precise" (the driver may not rewrite the arithmetic). GlslError when it does not compile.
+
+    ``isolated``: all of it is done in a process of its own, for code that may hang or crash the driver. To compile a
+    function, and to evaluate it, may each take ``time_limit`` seconds (60), and the process ``memory_limit`` bytes of
+    address space (8 GiB); a HarnessError tells when they do not suffice, and the next call works again.
     """
-    path = Path(path)
     macros = {name: str(text) for name, text in (defines or {}).items()}
+    if not isolated:
+        if time_limit is not None or memory_limit is not None:
+            raise CallError("time_limit and memory_limit are kept in a process of its own only: isolated=True")
+        return Shader(*_load(path, macros, include_dirs), mode)
+    from .isolation import SECONDS, Worker  # few callers need it
+    from .worker import MEMORY_BYTES
+
+    worker = Worker(time_limit or SECONDS, memory_limit or MEMORY_BYTES)
+    loaded = worker.call("to read it", (glsl.shown_path(path),), _load, path, macros, include_dirs)
+    return Shader(*loaded, mode, worker.evaluation)
+
+
+def _load(
+    path: str | Path, macros: Mapping[str, str], include_dirs: Sequence[str | Path]
+) -> tuple[glsl.Source, list[Signature]]:
+    path = Path(path)
     source = glsl.load(path, macros, [*include_dirs, path.parent], version=glsl.VERSION)
     try:
         text = rewrite.isolate(native.glsl_preprocess(Stage.FRAGMENT, source.text))
@@ -40,24 +66,24 @@ def shader(
         raise source.error(str(error)) from None
     plain = replace(source, text=text, written=source.text)
     functions = signatures(plain, rewrite.struct_names(text), rewrite.result_names(text))
-    return Shader(plain, functions, mode)
+    return plain, functions
 
 
 class Shader:
     """The functions of one GLSL file as attributes. Made by ``shader``."""
 
-    def __init__(self, source: glsl.Source, functions: Sequence[Signature], mode: str):
+    def __init__(self, source: glsl.Source, functions: Sequence[Signature], mode: str, engine: Engine = Evaluation):
         if mode not in MODES:
             raise CallError(f"no mode {mode!r}; there are: {', '.join(MODES)}")
-        self._source, self._signatures, self._mode = source, functions, mode
+        self._source, self._signatures, self._mode, self._engine = source, functions, mode, engine
         self._functions = {
-            name: Function(source, [s for s in functions if s.name == name], mode)
+            name: Function(source, [s for s in functions if s.name == name], mode, engine)
             for name in dict.fromkeys(s.name for s in functions)
         }
 
     def with_mode(self, mode: str) -> Shader:
         """The same functions, compiled in another mode."""
-        return Shader(self._source, self._signatures, mode)
+        return Shader(self._source, self._signatures, mode, self._engine)
 
     def __getattr__(self, name: str) -> Function:
         if name.startswith("__"):
@@ -83,8 +109,8 @@ class _NoFunctionError(CallError, AttributeError):
 class Function:
     """A GLSL function; its overloads are told apart by the arguments. Call it with arrays that broadcast."""
 
-    def __init__(self, source: glsl.Source, overloads: Sequence[Signature], mode: str):
-        self._source, self._overloads, self._mode = source, overloads, mode
+    def __init__(self, source: glsl.Source, overloads: Sequence[Signature], mode: str, engine: Engine):
+        self._source, self._overloads, self._mode, self._engine = source, overloads, mode, engine
         self._compiled: dict[Signature, Evaluation] = {}
         self.__name__ = overloads[0].name
         self.__doc__ = "\n".join(f"{s}    [{s.origin[0]}:{s.origin[1]}]" for s in overloads)
@@ -106,7 +132,7 @@ class Function:
         """
         signature, arguments, rest = self._overload(args, kwargs)
         if signature not in self._compiled:
-            self._compiled[signature] = Evaluation(self._source, signature, self._mode)
+            self._compiled[signature] = self._engine(self._source, signature, self._mode)
         evaluation = self._compiled[signature]
         self._set_uniforms(evaluation, rest)
         return _evaluate(evaluation, arguments)

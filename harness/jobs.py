@@ -21,6 +21,7 @@ from .errors import HarnessError
 
 ATTEMPTS = 3  # of an item, before the workers' deaths are laid to it
 
+_PATIENCE = 5.0  # for a worker to be gone that no longer answers
 _CONNECT_SECONDS = 5
 _WORKERS_SECONDS = 10
 _QUEUED = 2  # items on the way for each worker of a cluster: one at work, one waiting, so that none idles
@@ -87,7 +88,7 @@ def _run_here(work: Callable, items: Iterable, workers: int) -> Iterator[tuple[i
             try:
                 reply = ready.recv_bytes()
             except (EOFError, OSError):
-                how = worker.ended()
+                how = worker.end(_PATIENCE)
                 deaths[index] = deaths.get(index, 0) + 1
                 if deaths[index] == ATTEMPTS:
                     raise _died(index, item, how) from None

@@ -60,19 +60,15 @@ class Process:
             self.connection.send(sys.path)
             self.connection.send_bytes(first)
 
-    def end(self) -> str:
-        """Kills it, unless it is dead, and waits for that. Says how it ended, as "SIGSEGV" or "exit code 1"."""
+    def end(self, patience: float = 0.0) -> str:
+        """How it ended, as "SIGSEGV" or "exit code 1"; killed, if that takes longer than ``patience`` seconds."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(patience)
         self._process.kill()
         code = self._process.wait()
         self._process.stdin.close()
         self.connection.close()
         return signal.Signals(-code).name if code < 0 else f"exit code {code}"
-
-    def ended(self) -> str:
-        """How a process ended whose connection has closed; kills it where it goes on without one."""
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(5)
-        return self.end()
 
 
 def attempt(work: Callable[..., Any], *arguments: Any) -> tuple[bool, Any]:
