@@ -80,6 +80,10 @@ const char *hn_context_info(void) {
     return hn_context_check("hn_context_info") ? NULL : info;
 }
 
+int hn_context_take_error(void) {
+    return context && OSMesaGetCurrentContext() == context ? hn_check_gl("GL") : 0;
+}
+
 int hn_context_check(const char *operation) {
     if (!context)
         return hn_fail("%s: no context: call hn_context_open() first", operation);

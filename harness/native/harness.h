@@ -42,6 +42,9 @@ int hn_context_open(void);
 void hn_context_close(void);
 /* "renderer\nversion\nGLSL version" of the open context. */
 const char *hn_context_info(void);
+/* Returns -1 and names them in hn_error() where GL has errors that no operation has reported yet, as the deletion of
+ * what is not there leaves them; they are forgotten. 0 when there is none, or no context in this thread. */
+int hn_context_take_error(void);
 
 /* ---- GLSL through glslang (glslang.c); needs no context ------------------------------------------------ */
 
@@ -56,6 +59,8 @@ char *hn_glsl_preprocess(hn_stage stage, const char *text);
 /* glslang's dump of the syntax tree, uncalled functions included: function signatures with in/out, parameter
  * and member names. `text` needs no main(). */
 char *hn_glsl_tree(hn_stage stage, const char *text);
+/* The version of glslang, as "12.0.0". */
+const char *hn_glsl_version(void);
 
 /* ---- Programs (program.c) ------------------------------------------------------------------------------ */
 

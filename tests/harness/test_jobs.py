@@ -202,18 +202,31 @@ class Cluster:
     def worker(self, *options, **environment):
         return self._start("worker", self.address, "--no-nanny", "--no-dashboard", *options, **environment)
 
-    def end(self):
-        for process in self.processes:
+    def end(self, processes):
+        for process in processes:
             process.kill()
             process.wait()
 
+    def end_workers(self):
+        self.end(self.processes[1:])
+        del self.processes[1:]
+        log = self.log.read_text
+        assert eventually(lambda: log().count("Remove worker") == log().count("Register worker")), log()
+
+
+@pytest.fixture(scope="module")
+def scheduler(tmp_path_factory):
+    pytest.importorskip("distributed", reason="dask.distributed is not installed: pip install -e .[cluster]")
+    started = Cluster(tmp_path_factory.mktemp("cluster"))
+    yield started
+    started.end(started.processes)
+
 
 @pytest.fixture
-def cluster(tmp_path):
-    pytest.importorskip("distributed", reason="dask.distributed is not installed: pip install -e .[cluster]")
-    started = Cluster(tmp_path)
-    yield started
-    started.end()
+def cluster(scheduler):
+    """A scheduler that has no workers yet."""
+    yield scheduler
+    scheduler.end_workers()
 
 
 def test_a_cluster_with_a_worker_killed_in_the_middle_computes_the_same(tmp_path, cluster):
@@ -273,8 +286,9 @@ def test_work_that_a_worker_cannot_import_is_an_error(tmp_path, cluster):
 
 def test_a_cluster_that_loses_all_workers_is_an_error(tmp_path, cluster, monkeypatch):
     monkeypatch.setattr(jobs, "_WORKERS_SECONDS", 0.5)
+    registered = cluster.log.read_text().count("Registered to")
     worker = cluster.worker("--nthreads", "1")
-    eventually(lambda: "Registered to" in cluster.log.read_text())
+    assert eventually(lambda: cluster.log.read_text().count("Registered to") > registered)
     results = jobs.run(partial(die_once, tmp_path, 1), range(3), scheduler=cluster.address)
     with pytest.raises(HarnessError, match="has no workers"):
         list(results)

@@ -1,6 +1,7 @@
 /* test_native.c: runs the tests of the C library; and those of the context and of failures themselves. */
 #include "check.h"
 
+#include <dlfcn.h>
 #include <stdlib.h>
 #include <threads.h>
 
@@ -53,7 +54,21 @@ static void test_no_context(void) {
     hn_mesh_delete(NULL);
     hn_target_delete(NULL);
     hn_free(NULL);
+    CHECK(hn_context_take_error() == 0);
     hn_context_close();
+}
+
+/* An error that none of our operations has made, and none has reported, is told once. */
+static void test_take_error(void) {
+    CHECK(hn_context_take_error() == 0);
+    void *library = dlopen("libOSMesa.so.8", RTLD_LAZY);
+    void *found = library ? dlsym(library, "glEnable") : NULL;
+    void (*enable)(GLenum capability);
+    memcpy(&enable, &found, sizeof enable);
+    CHECK(found);
+    enable(GL_TRIANGLES);
+    CHECK_FAILS(hn_context_take_error() == -1, "GL: GL_INVALID_ENUM");
+    CHECK(hn_context_take_error() == 0);
 }
 
 static void test_open_and_close(void) {
@@ -90,6 +105,7 @@ static void test_open_and_close(void) {
 
 static int use_elsewhere(void *unused) {
     (void)unused;
+    CHECK(hn_context_take_error() == 0);
     CHECK_FAILS(!hn_target_create(1, 1, 0), "the context belongs to the thread that opened it");
     CHECK_FAILS(hn_context_open() == -1, "the context belongs to the thread that opened it");
     return 0;
@@ -105,6 +121,7 @@ static void test_other_thread(void) {
 void test_context(void) {
     test_no_context();
     test_open_and_close();
+    test_take_error();
     test_other_thread();
 }
 
