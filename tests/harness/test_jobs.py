@@ -47,7 +47,8 @@ def die_once(folder, victim, x):
     return x
 
 
-def always_die(x):
+def always_die(folder, x):
+    (folder / str(os.getpid())).touch()
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
@@ -58,6 +59,13 @@ def process_of(x):
 def wait_for_ever(folder, x):
     (folder / str(os.getpid())).touch()
     time.sleep(1000)
+
+
+def fail_beside_a_long_item(folder, x):
+    if x == 0:
+        wait_for_ever(folder, x)
+    eventually(lambda: any(folder.iterdir()))
+    raise CallError("no such thing")
 
 
 def cosines(seconds, file, x):
@@ -111,9 +119,10 @@ def test_an_item_whose_worker_is_killed_is_run_again(tmp_path):
     assert sorted(got) == [(i, i) for i in range(12)]
 
 
-def test_an_item_that_kills_every_worker_is_named():
+def test_an_item_that_kills_every_worker_is_named(tmp_path):
     with pytest.raises(HarnessError, match=r"died 3 times \(SIGSEGV\) on item 0: 'the culprit'"):
-        list(jobs.run(always_die, ["the culprit"], workers=2))
+        list(jobs.run(partial(always_die, tmp_path), ["the culprit"], workers=2))
+    assert len(list(tmp_path.iterdir())) == 3
 
 
 def test_an_error_of_the_work_arrives_with_its_file_and_line():
@@ -149,6 +158,13 @@ def eventually(condition, seconds=20.0):
     return condition()
 
 
+def test_an_error_ends_what_is_at_work_beside_it(tmp_path):
+    with pytest.raises(CallError):
+        list(jobs.run(partial(fail_beside_a_long_item, tmp_path), range(2), workers=2))
+    (other,) = tmp_path.iterdir()
+    assert not alive(int(other.name))
+
+
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 def test_no_worker_outlives_the_caller(tmp_path, sent):
     code = (
@@ -158,12 +174,15 @@ def test_no_worker_outlives_the_caller(tmp_path, sent):
         "list(jobs.run(partial(test_jobs.wait_for_ever, Path(sys.argv[2])), range(9), workers=2))\n"
     )
     command = [sys.executable, "-c", code, str(Path(__file__).parent), str(tmp_path)]
-    caller = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    caller = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
     try:
         assert eventually(lambda: len(list(tmp_path.iterdir())) == 2), caller.poll()
         workers = [int(path.name) for path in tmp_path.iterdir()]
         assert all(map(alive, workers))
-        caller.send_signal(sent)
+        if sent == signal.SIGINT:
+            os.killpg(caller.pid, sent)  # as a terminal's Ctrl-C does
+        else:
+            caller.send_signal(sent)
         error = caller.communicate(timeout=20)[1]
         assert eventually(lambda: not any(map(alive, workers)))
         assert error.count("Traceback") == (sent == signal.SIGINT)  # the caller's own, and none of a worker's
@@ -249,6 +268,15 @@ def test_a_cluster_with_a_worker_killed_in_the_middle_computes_the_same(tmp_path
                 killed.wait()
     assert killed.returncode == -signal.SIGKILL
     assert there == here and len(there) == 24
+
+
+def test_items_for_a_cluster_are_read_only_as_fast_as_they_are_worked_through(cluster):
+    cluster.worker("--nthreads", "1")
+    items = iter(range(10**9))
+    results = jobs.run(squared, items, scheduler=cluster.address)
+    assert sorted(next(results) for _ in range(5)) == [(k, k * k) for k in range(5)]
+    results.close()
+    assert next(items) <= 5 + 2
 
 
 def test_an_error_of_the_work_arrives_from_a_cluster(cluster):

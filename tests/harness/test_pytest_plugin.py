@@ -78,12 +78,12 @@ def test_files_are_found_beside_the_test_then_in_the_root(project):
     (project.path / "lib" / "parts" / "one.glsl").write_text("float one() { return ONE; }\n")
     (project.path / "lib" / "f.glsl").write_text("wrong\n")
     project.mkdir("sub")
-    (project.path / "sub" / "f.glsl").write_text("float two() { return 2.5; }\n")
+    (project.path / "sub" / "f.glsl").write_text('#include "parts/one.glsl"\nfloat two() { return one() + 1.5; }\n')
     (project.path / "sub" / "test_sub.py").write_text(
         "def test(shader):\n"
         "    assert shader('other.glsl', defines={'ONE': 1.0}).two() == 2\n"
         "    assert shader('other.glsl', {'ONE': '10.0'}).two() == 11\n"
-        "    assert shader('f.glsl').two() == 2.5\n"
+        "    assert shader('f.glsl', {'ONE': 1.0}).two() == 2.5\n"
     )
     run(project).assert_outcomes(passed=2)
 
@@ -195,6 +195,16 @@ def test_agreeing_files_are_not_written_again_nor_twice_in_a_run(project):
     result.assert_outcomes(passed=2, failed=1)
     result.stdout.fnmatch_lines(["E*it was written in this run, by this test in another mode*"])
     assert np.load(project.path / "golden" / "b.npy").tolist() == [0.25, 0.25]
+
+
+def test_what_is_within_the_tolerance_passes(project):
+    (project.path / "golden").mkdir()
+    np.save(project.path / "golden" / "a.npy", np.float32([1, -100, np.inf]))
+    project.makepyfile(
+        "import numpy as np\n"
+        "def test(golden): golden('a.npy', np.float32([1.24, -110.0, np.inf]), atol=0.125, rtol=0.125)\n"
+    )
+    run(project).assert_outcomes(passed=1)
 
 
 @pytest.mark.parametrize(
