@@ -1,29 +1,50 @@
-"""Calls GLSL functions on numpy arrays and renders SHADERed projects, without a display or a GPU."""
+"""Calls GLSL functions on numpy arrays and renders SHADERed projects, without a display or a GPU.
 
-from .call import shader
-from .compare import assert_close, assert_finite, assert_ulp, elementwise, error_budget, ulp_difference
-from .domain import samples
-from .errors import CallError, CompareError, DomainError, GlslError, HarnessError, NativeError, ProjectError
-from .render import render, render_floats
-from .texture_argument import Texture
+What is public is imported when it is first asked for: pytest loads our plugin into every project's tests, and most of
+them have nothing to do with shaders, numpy or OpenGL.
+"""
 
-__all__ = [
-    "CallError",
-    "CompareError",
-    "DomainError",
-    "GlslError",
-    "HarnessError",
-    "NativeError",
-    "ProjectError",
-    "Texture",
-    "assert_close",
-    "assert_finite",
-    "assert_ulp",
-    "elementwise",
-    "error_budget",
-    "render",
-    "render_floats",
-    "samples",
-    "shader",
-    "ulp_difference",
-]
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+#: module -> the public names in it
+_PUBLIC = {
+    "call": ("shader",),
+    "compare": ("assert_close", "assert_finite", "assert_ulp", "elementwise", "error_budget", "ulp_difference"),
+    "domain": ("samples",),
+    "errors": (
+        "CallError",
+        "CompareError",
+        "DomainError",
+        "GlslError",
+        "HarnessError",
+        "NativeError",
+        "ProjectError",
+    ),
+    "render": ("render", "render_floats"),
+    "texture_argument": ("Texture",),
+}
+_HOMES = {name: module for module, names in _PUBLIC.items() for name in names}
+
+__all__ = sorted(_HOMES)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_HOMES[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]
+
+
+class _Package(ModuleType):
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _HOMES and isinstance(value, ModuleType)):  # harness.render is the function, not its module
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from . import library, overloads
 from .errors import CallError, among
 from .function import Function, known_mode
+from .glsl import shown_path
 
 
 def shader(
@@ -16,14 +18,32 @@ def shader(
     defines: Mapping[str, Any] | None = None,
     include_dirs: Sequence[str | Path] = (),
     mode: str = "as-written",
+    *,
+    isolated: bool = False,
+    time_limit: float | None = None,
+    memory_limit: int | None = None,
 ) -> Shader:
     """The functions of a GLSL file, callable by name.
 
     ``defines`` are macros, ``include_dirs`` the folders where includes are looked for, before those of the including
     file and of the first one. ``mode`` is one of ``dialect.MODES``. GlslError when it does not compile.
+
+    ``isolated``: all of it is done in a process of its own, for code that may hang or crash the driver. To compile a
+    function, and to evaluate a block of a batch, may each take ``time_limit`` seconds (60), and the process
+    ``memory_limit`` bytes of address space (8 GiB); a HarnessError tells when they do not suffice, and the next call
+    works again.
     """
     known_mode(mode)
-    return Shader(library.load(path, defines or {}, include_dirs), mode)
+    if not isolated:
+        if time_limit is not None or memory_limit is not None:
+            raise CallError("time_limit and memory_limit are kept in a process of its own only: isolated=True")
+        return Shader(library.load(path, defines or {}, include_dirs), mode)
+    from .isolation import SECONDS, Worker  # few callers need it
+    from .worker import MEMORY_BYTES
+
+    worker = Worker(time_limit or SECONDS, memory_limit or MEMORY_BYTES)
+    loaded = worker.call("to read it", (shown_path(path),), library.load, path, defines or {}, include_dirs)
+    return Shader(replace(loaded, engine=worker.evaluation), mode)
 
 
 class Shader:

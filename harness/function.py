@@ -9,7 +9,6 @@ from . import batches, overloads
 from .dialect import MODES
 from .errors import CallError, HarnessError, among
 from .evaluation import Evaluation
-from .glsl import Source
 from .library import Library
 from .signature import Signature
 from .texture_argument import Texture
@@ -18,7 +17,6 @@ from .uniform_values import set_all
 if TYPE_CHECKING:  # what few callers need is loaded when they do
     import inspect
 
-    from .interpretation import Interpretation
     from .mode_comparison import ModeComparison
     from .trace import Trace
 
@@ -28,15 +26,6 @@ def known_mode(mode: str) -> str:
     if mode not in MODES:
         raise CallError(f"no mode {mode!r}{among(str(mode), MODES)}")
     return mode
-
-
-def _engine(source: Source, signature: Signature, mode: str) -> Evaluation | Interpretation:
-    """What evaluates a function in a mode: the driver, or in double our interpreter."""
-    if mode == "double":
-        from .interpretation import Interpretation
-
-        return Interpretation(source, signature, "float64")
-    return Evaluation(source, signature, mode)
 
 
 class _Documentation:
@@ -190,7 +179,7 @@ class Function:
         """The compiled function, its uniforms set."""
         place = (signature, self._mode)
         if place not in self._library.compiled:
-            self._library.compiled[place] = _engine(self._library.source, signature, self._mode)
+            self._library.compiled[place] = self._library.engine(self._library.source, signature, self._mode)
         evaluation = self._library.compiled[place]
         if uniforms or evaluation.uniforms:
             set_all(evaluation, uniforms)

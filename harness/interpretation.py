@@ -88,6 +88,7 @@ class Interpretation:
         self._places = interpreter_uniforms.read_by(module, self.function)
         #: those that the function reads, as a driver describes them
         self.uniforms = {name: _described(uniform) for name, uniform in self._places.items()}
+        self.samplers: dict[str, tuple[str, str]] = {}  # as Evaluation.samplers: nothing here reads a texture
         self._buffers = {p: [buffer for buffer, _ in buffers] for p, buffers in self.inputs}
 
     def array_length(self, name: str) -> int | None:

@@ -2,30 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from . import comments, dialect, glsl, native, rewrite
+from .engine import engine
 from .native import Stage
 from .signature import Signature, signatures
 
 
 @dataclass(frozen=True, eq=False)
 class Library:
-    """The functions of a file. ``compiled`` keeps what was compiled of them, by function and mode."""
+    """The functions of a file.
+
+    ``engine`` makes what evaluates a function in a mode, here or elsewhere; ``compiled`` keeps that, by both.
+    """
 
     defines: Mapping[str, str]
     include_dirs: Sequence[str]
     source: glsl.Source
     signatures: Sequence[Signature]
+    engine: Callable[[glsl.Source, Signature, str], Any] = engine
     compiled: dict[tuple, Any] = field(default_factory=dict)
 
     def __getstate__(self):
-        """Without what was compiled: a worker process compiles for itself."""
-        return self.__dict__ | {"compiled": {}}
+        """Without what was compiled, and with the engine of this process: a worker process compiles for itself."""
+        return self.__dict__ | {"compiled": {}, "engine": engine}
 
     @property
     def path(self) -> str:

@@ -1,10 +1,12 @@
-"""Pictures on disk: writes PNG files whole or not at all."""
+"""Files on disk, pictures above all: written whole or not at all."""
 
 from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from PIL import Image
@@ -16,18 +18,23 @@ COMPRESSION = 1
 
 
 def write_png(path: str | os.PathLike, pixels: np.ndarray) -> None:
-    """Writes ``pixels``, (h, w, 3 or 4) uint8 with the top row first. HarnessError when that cannot be done.
+    """Writes ``pixels``, (h, w, 3 or 4) or (h, w) uint8 with the top row first. HarnessError when that cannot be done.
 
-    The file appears complete or does not change: it is written under another name beside it and then renamed.
+    The file appears complete or does not change.
     """
+    write(path, lambda file: Image.fromarray(pixels).save(file, format="PNG", compress_level=COMPRESSION))
+
+
+def write(path: str | os.PathLike, save: Callable[[BinaryIO], None]) -> None:
+    """Writes what ``save`` puts into a file: under another name beside it, which is then renamed."""
     path = Path(path)
     try:
         handle, temporary = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     except OSError as error:
-        raise HarnessError(f"cannot write the picture: {error.strerror}", path) from error
+        raise HarnessError(f"cannot write the file: {error.strerror}", path) from error
     try:
         with os.fdopen(handle, "wb") as file:
-            Image.fromarray(pixels).save(file, format="PNG", compress_level=COMPRESSION)
+            save(file)
         umask = os.umask(0)
         os.umask(umask)
         os.chmod(temporary, 0o666 & ~umask)
@@ -35,5 +42,5 @@ def write_png(path: str | os.PathLike, pixels: np.ndarray) -> None:
     except BaseException as error:
         os.unlink(temporary)
         if isinstance(error, OSError):
-            raise HarnessError(f"cannot write the picture: {error.strerror}", path) from error
+            raise HarnessError(f"cannot write the file: {error.strerror}", path) from error
         raise

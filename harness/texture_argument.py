@@ -87,6 +87,10 @@ class Texture:
     def __repr__(self):
         return f"<Texture {self._texels.shape[1]}x{self._texels.shape[0]} {self._texels.dtype}>"
 
+    def __getstate__(self):
+        """Without what is in this process's context."""
+        return self.__dict__ | {"_texture": None}
+
     def bind(self, unit: int) -> None:
         """Makes it the texture of a unit of the open context."""
         if self._texture is None:

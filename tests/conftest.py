@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import platform
 from pathlib import Path
 
 import pytest
 
 import harness
-from harness import native
+from harness.info import info
 
 ROOT = Path(__file__).resolve().parent.parent
 
+collect_ignore = ["foreign"]  # a repository of its own, which test_foreign.py copies and tests
+
 
 def pytest_report_header(config):
-    native.open_context()
-    info = native.context_info()
-    return f"GL: {info['renderer']}, {info['version']}; CPU: {platform.processor() or platform.machine()}"
+    return ", ".join(f"{name} {value}" for name, value in info().items())
 
 
 @pytest.fixture(params=["as-written", "precise"])

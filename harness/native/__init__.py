@@ -101,10 +101,12 @@ _PROTOTYPES = {
     "hn_context_open": (_INT, []),
     "hn_context_close": (None, []),
     "hn_context_info": (_TEXT, []),
+    "hn_context_take_error": (_INT, []),
     "hn_glsl_check": (_INT, [_INT, _TEXT, _INT]),
     "hn_glsl_preprocess": (_POINTER, [_INT, _TEXT]),
     "hn_glsl_tree": (_POINTER, [_INT, _TEXT]),
     "hn_glsl_spirv": (_INT, [_INT, _TEXT, ctypes.POINTER(_POINTER), ctypes.POINTER(_SIZE)]),
+    "hn_glsl_version": (_TEXT, []),
     "hn_program_create": (_UINT, [_TEXT, _TEXT]),
     "hn_program_delete": (None, [_UINT]),
     "hn_program_uniforms": (_INT, [_UINT, _VARIABLES, _INT]),
@@ -215,6 +217,16 @@ def context_info() -> dict[str, str]:
     if text is None:
         raise _error()
     return dict(zip(("renderer", "version", "glsl", "backend"), text.decode().split("\n"), strict=True))
+
+
+def take_error() -> str | None:
+    """The errors of GL that no operation has reported yet, which are forgotten by this."""
+    return None if _library.hn_context_take_error() == 0 else str(_error())
+
+
+def glslang_version() -> str:
+    """glslang's, as "12.0.0"."""
+    return _library.hn_glsl_version().decode()
 
 
 def glsl_check(stage: Stage, text: str, *, spirv: bool) -> None:

@@ -84,6 +84,10 @@ const char *hn_context_info(void) {
     return hn_context_check("hn_context_info") ? NULL : info;
 }
 
+int hn_context_take_error(void) {
+    return is_open && chosen->is_current() ? hn_check_gl("GL") : 0;
+}
+
 int hn_context_check(const char *operation) {
     if (!is_open)
         return hn_fail("%s: no context: call hn_context_open() first", operation);

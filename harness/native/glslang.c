@@ -3,6 +3,7 @@
 
 #include <glslang/Include/glslang_c_interface.h>
 #include <glslang/Public/resource_limits_c.h>
+#include <glslang/build_info.h>
 
 #include <stdlib.h>
 #include <string.h>
@@ -202,4 +203,11 @@ char *hn_glsl_tree(hn_stage stage, const char *text) {
     char *result = copy(operation, glslang_shader_get_info_debug_log(shader));
     glslang_shader_delete(shader);
     return result;
+}
+
+#define TEXT_OF(value) #value
+#define TEXT(value) TEXT_OF(value)
+
+const char *hn_glsl_version(void) {
+    return TEXT(GLSLANG_VERSION_MAJOR) "." TEXT(GLSLANG_VERSION_MINOR) "." TEXT(GLSLANG_VERSION_PATCH);
 }

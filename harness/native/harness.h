@@ -46,6 +46,9 @@ int hn_context_open(void);
 void hn_context_close(void);
 /* "renderer\nversion\nGLSL version\nbackend" of the open context. */
 const char *hn_context_info(void);
+/* Returns -1 and names them in hn_error() where GL has errors that no operation has reported yet, as the deletion of
+ * what is not there leaves them; they are forgotten. 0 when there is none, or no context in this thread. */
+int hn_context_take_error(void);
 
 /* ---- GLSL through glslang (glslang.c); needs no context ------------------------------------------------ */
 
@@ -63,6 +66,8 @@ char *hn_glsl_tree(hn_stage stage, const char *text);
 /* A stage with a main() as SPIR-V: what main() reaches, not optimised, with names and lines. Locations and
  * bindings that are not stated are given out. `*words` is the caller's: give it to hn_free(). */
 int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_words);
+/* The version of glslang, as "12.0.0". */
+const char *hn_glsl_version(void);
 
 /* ---- Programs (program.c) ------------------------------------------------------------------------------ */
 

@@ -477,5 +477,5 @@ def test_a_picture_that_fails_leaves_the_old_one(tmp_path):
 
 
 def test_a_folder_that_is_not_there(tmp_path):
-    with pytest.raises(HarnessError, match="cannot write the picture"):
+    with pytest.raises(HarnessError, match="cannot write the file"):
         write_png(tmp_path / "gone" / "p.png", np.zeros((2, 2, 4), np.uint8))

@@ -5,6 +5,12 @@
 
 #define HEAD "#version 330\n"
 
+static void test_version(void) {
+    int major = 0, minor = -1, patch = -1;
+    CHECK(sscanf(hn_glsl_version(), "%d.%d.%d", &major, &minor, &patch) == 3);
+    CHECK(major >= 11 && minor >= 0 && patch >= 0);
+}
+
 static void test_check(void) {
     const char *good = HEAD "out vec4 color;\nvoid main() { color = vec4(1.0); }\n";
     CHECK(hn_glsl_check(HN_FRAGMENT, good, 0) == 0);
@@ -233,6 +239,7 @@ static void test_spirv(void) {
 }
 
 void test_glsl(void) {
+    test_version();
     CHECK(strcmp(hn_error(), "") == 0);
     test_check();
     test_long_message();

@@ -57,7 +57,16 @@ static void test_no_context(void) {
     hn_mesh_delete(NULL);
     hn_target_delete(NULL);
     hn_free(NULL);
+    CHECK(hn_context_take_error() == 0);
     hn_context_close();
+}
+
+/* An error that none of our operations has made, and none has reported, is told once. */
+static void test_take_error(void) {
+    CHECK(hn_context_take_error() == 0);
+    hn_program_delete(UINT32_MAX); /* is none */
+    CHECK_FAILS(hn_context_take_error() == -1, "GL: GL_INVALID_VALUE");
+    CHECK(hn_context_take_error() == 0);
 }
 
 static void test_open_and_close(void) {
@@ -97,6 +106,7 @@ static void test_open_and_close(void) {
 
 static int use_elsewhere(void *unused) {
     (void)unused;
+    CHECK(hn_context_take_error() == 0);
     CHECK_FAILS(!hn_target_create(1, 1, 0), "the context belongs to the thread that opened it");
     CHECK_FAILS(hn_context_open() == -1, "the context belongs to the thread that opened it");
     return 0;
@@ -112,6 +122,7 @@ static void test_other_thread(void) {
 void test_context(void) {
     test_no_context();
     test_open_and_close();
+    test_take_error();
     test_other_thread();
 }
 

@@ -15,7 +15,7 @@ from harness.interpretation import Interpretation
 def interpreted(function, precision="float32"):
     """The function of another shader object, evaluated by the interpreter."""
     (signature,) = function.signatures
-    function._compiled[signature] = Interpretation(function._source, signature, precision)
+    function._compiled[signature] = Interpretation(function._library.source, signature, precision)
     return function
 
 
