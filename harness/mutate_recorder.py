@@ -17,7 +17,7 @@ from . import call, glsl
 #: what is used, where it is not known: any shader, any function
 ANY = "*"
 
-_MESSAGE_LINES = 12
+_MESSAGE_LINES = 5
 
 
 class Recorder:
@@ -158,7 +158,10 @@ def _called_from(function: Any) -> bool:
 
 
 def _message(report: Any) -> str:
-    return "\n".join(str(report.longrepr).splitlines()[-_MESSAGE_LINES:])
+    """What pytest marks as the error, else the end of what it says."""
+    lines = str(report.longrepr).splitlines()
+    marked = [line[1:].strip() for line in lines if line.startswith("E ")]
+    return "\n".join(marked[:_MESSAGE_LINES] or lines[-1:])
 
 
 def _gl_is_open() -> bool:
