@@ -6,7 +6,7 @@ import functools
 import os
 import sys
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,13 +32,13 @@ class Recorder:
         self._file, self._bytes = file, file.read_bytes()
         self._at: str | None = None  # the test, or the fixture, that runs; None while tests are collected
         self._uses: dict[str | None, set[tuple[int | str, str]]] = defaultdict(set)
-        self._loaded: dict[str, int] = {}
-        self._places: list[list[tuple[int, int]]] = []
+        self._numbers: dict[str, int | None] = {}
+        self._loaded: list[tuple[str, list[tuple[int, int]]]] = []
         self._is_file: dict[str, bool] = {}
         self._fixtures: dict[str, list[str]] = {}
         self._seconds: dict[str, float] = defaultdict(float)
         self._failed: dict[str, str] = {}
-        self._cold = False  # the file is read, or GL started, when tests are collected
+        self._cold = False  # the file is read, GL or a process started, when tests are collected
         self._order: list[str] = []
 
     def install(self) -> None:
@@ -48,7 +48,11 @@ class Recorder:
         @functools.wraps(load)
         def watched_load(*args: Any, **kwargs: Any) -> glsl.Source:
             source = load(*args, **kwargs)
-            self._note_load(source)
+            shader = self._shader(source.text, source.origins)
+            if shader is not None:
+                self._cold = self._cold or self._at is None
+                if not _called_from(call.shader):  # else what it is used for is seen when its functions are called
+                    self._uses[self._at].add((shader, ANY))
             return source
 
         glsl.load = watched_load
@@ -61,24 +65,21 @@ class Recorder:
         @functools.wraps(method)
         def watched(function: call.Function, *args: Any, **kwargs: Any) -> Any:
             source = function._source
-            shader = self._loaded.get(source.written or source.text)
+            shader = self._shader(source.written or source.text, source.origins)
             if shader is not None:
                 self._uses[self._at].add((shader, function.__name__))
             return method(function, *args, **kwargs)
 
         return watched
 
-    def _note_load(self, source: glsl.Source) -> None:
-        if source.text not in self._loaded:
-            places = [(n, m) for n, (file, m) in enumerate(source.origins, 1) if self._is_ours(file)]
-            if not places:
-                return
-            self._loaded[source.text] = len(self._places)
-            self._places.append(places)
-        if self._at is None:
-            self._cold = True
-        if not _called_from(call.shader):  # else what it is used for is seen when its functions are called
-            self._uses[self._at].add((self._loaded[source.text], ANY))
+    def _shader(self, text: str, origins: Sequence[tuple[str, int]]) -> int | None:
+        """The number of a shader that the file takes part in, None for others."""
+        if text not in self._numbers:
+            places = [(n, m) for n, (file, m) in enumerate(origins, 1) if self._is_ours(file)]
+            self._numbers[text] = len(self._loaded) if places else None
+            if places:
+                self._loaded.append((text, places))
+        return self._numbers[text]
 
     def _is_ours(self, file: str) -> bool:
         """Whether it is the file, or a copy."""
@@ -97,8 +98,10 @@ class Recorder:
                 self._cold = self._cold or self._at is None
                 if not _called_from(glsl.load) and not _called_from(self._is_ours):
                     self._uses[self._at].add((ANY, ANY))
-        elif event == "subprocess.Popen" and any(self._file.name in str(word) for word in args[1]):
-            self._uses[self._at].add((ANY, ANY))
+        elif event == "subprocess.Popen":
+            self._cold = self._cold or self._at is None  # a worker process that every child would share
+            if any(self._file.name in str(word) for word in args[1]):
+                self._uses[self._at].add((ANY, ANY))
 
     # ---- pytest's hooks
 
@@ -139,8 +142,7 @@ class Recorder:
         for name in self._order:
             uses = always.union(self._uses[name], *(self._uses[f] for f in self._fixtures[name]))
             tests.append([name, self._seconds[name], sorted(uses, key=str), self._failed.pop(name, None)])
-        texts = [[text, self._places[n]] for text, n in self._loaded.items()]
-        return {"loaded": texts, "tests": tests, "cold": self._cold, "not_collected": self._failed, "code": code}
+        return {"loaded": self._loaded, "tests": tests, "cold": self._cold, "not_collected": self._failed, "code": code}
 
 
 def _fixture_name(definition: Any) -> str:
