@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 NATIVE := $(wildcard harness/native/*.c harness/native/*.h) CMakeLists.txt
 SANITIZED := build/sanitize
-BRDF_TESTS := tests/shaders/test_brdf_terms.py tests/shaders/test_shade.py tests/shaders/test_energy.py
+BRDF_TESTS := $(wildcard tests/shaders/test_brdf_*.py tests/shaders/test_shade*.py) tests/shaders/test_energy.py
 
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 EXTRA = import sys, tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"][sys.argv[1]], sep="\n")
