@@ -138,18 +138,20 @@ class Server:
             code = _pytest(self._arguments, recorder)
             write(recorder.result(int(code)))
 
-        self._child(run, take, lambda: None)
+        self._child(run, take, lambda child: None)
         return found
 
     def _attempt(self, request: dict[str, Any], warm: WarmTests | None) -> dict[str, Any]:
         tests = dict(request["tests"])
         names = list(tests)
-        state: dict[str, Any] = {"by": None, "until": None, "status": None}
+        state: dict[str, Any] = {"by": None, "status": None}
+        limit = _Limit(sum(tests.values()))  # of what comes before the first test
 
         def take(message: dict[str, Any]) -> None:
+            nonlocal limit
             if "start" in message:
                 state["by"] = message["start"]
-                state["until"] = time.monotonic() + tests.get(message["start"], max(tests.values(), default=60))
+                limit = _Limit(tests[message["start"]])
             else:
                 state.update(message)
 
@@ -163,9 +165,8 @@ class Server:
                 chosen.finish(int(_pytest([*(files if there else self._arguments), "--maxfail=1"], chosen)))
 
         self._file.write_text(request["text"])
-        state["until"] = time.monotonic() + sum(tests.values())
         try:
-            ended = self._child(run, take, lambda: state["until"])
+            ended = self._child(run, take, lambda child: limit.rest(child))
         finally:
             self._file.write_bytes(self._original)
         # a child that dies of its mutant crashed in a test
@@ -176,9 +177,9 @@ class Server:
         self,
         run: Callable[[Callable[[dict[str, Any]], None]], None],
         take: Callable[[dict[str, Any]], None],
-        until: Callable[[], float | None],
+        rest: Callable[[int], float | None],
     ) -> bool:
-        """Runs in a forked child, hands on what it writes, and kills it. False when it took until ``until()``."""
+        """Runs in a forked child, hands on what it writes, and kills it. False when ``rest``, its seconds, are 0."""
         reading, writing = os.pipe()
         child = os.fork()
         if child == 0:
@@ -193,9 +194,8 @@ class Server:
         left = b""
         try:
             while True:
-                limit = until()
-                rest = None if limit is None else max(limit - time.monotonic(), 0)
-                ready = select.select([reading, self._requests], [], [], rest)[0]
+                left_seconds = rest(child)
+                ready = select.select([reading, self._requests], [], [], left_seconds)[0]
                 if reading in ready:
                     part = os.read(reading, 1 << 20)
                     if not part:
@@ -205,7 +205,7 @@ class Server:
                         take(json.loads(line))
                 elif ready:
                     raise _Gone  # nothing is asked while an answer is due
-                else:
+                elif not left_seconds:
                     return False
         finally:
             os.close(reading)
@@ -214,6 +214,35 @@ class Server:
             except ProcessLookupError:
                 os.kill(child, signal.SIGKILL)  # it has not made its own group yet
             os.waitpid(child, 0)
+
+
+class _Limit:
+    """Seconds that a test may take: of the processor, or ``WAITING`` times as many of the clock.
+
+    A machine that has much else to do makes the clock run on; a test that hangs takes the one or the other.
+    """
+
+    WAITING = 10
+
+    def __init__(self, seconds: float):
+        self._seconds, self._start, self._used = seconds, time.monotonic(), None
+
+    def rest(self, child: int) -> float:
+        """Seconds after which to ask again; 0 where there are none left."""
+        used = _processor_seconds(child)
+        if self._used is None:
+            self._used = used
+        rest = self._seconds - (used - self._used)
+        if time.monotonic() - self._start > self.WAITING * self._seconds or rest <= 0:
+            return 0.0
+        return max(rest, 0.05)
+
+
+def _processor_seconds(process: int) -> float:
+    """What a process and its threads have used."""
+    with open(f"/proc/{process}/stat") as stat:
+        fields = stat.read().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 class WarmTests:

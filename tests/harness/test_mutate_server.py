@@ -27,6 +27,8 @@ def test_file():
         started = subprocess.Popen(["sleep", "1000"])
         pathlib.Path(os.environ["STARTED"]).write_text(str(started.pid))
         time.sleep(1000)
+    while text == "spin":
+        pass
     if text == "crash":
         os.kill(os.getpid(), 11)
     assert text in ("as it is", "other")
@@ -114,8 +116,9 @@ def test_what_becomes_of_a_text(server, warm, text, want):
 
 @pytest.mark.parametrize("warm", [False, True])
 def test_a_test_that_hangs_is_stopped_with_all_that_it_started(server, folder, warm):
-    assert server.run("hang", warm, 2.0) == ("timeout", "test_file")
+    assert server.run("hang", warm, 0.3) == ("timeout", "test_file")
     assert not is_alive(int((folder / "started").read_text()))
+    assert server.run("spin", warm, 0.3) == ("timeout", "test_file")
     assert server.run("other", warm) == ("survived", "")
 
 
