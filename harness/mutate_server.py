@@ -67,7 +67,6 @@ class Server:
             self._tree = self.folder / "project"
             copy_project(Path(first["root"]), first["files"], self._tree)
             self._file = self._tree / first["file"]
-            self._original = self._file.read_bytes()
             self._arguments = first["tests"]
             os.environ["MESA_SHADER_CACHE_DIR"] = str(self.folder / "cache")
             os.environ["HARNESS_NATIVE_LIB"] = _native_library()
@@ -165,10 +164,7 @@ class Server:
                 chosen.finish(int(_pytest([*(files if there else self._arguments), "--maxfail=1"], chosen)))
 
         self._file.write_text(request["text"])
-        try:
-            ended = self._child(run, take, lambda child: limit.rest(child))
-        finally:
-            self._file.write_bytes(self._original)
+        ended = self._child(run, take, lambda child: limit.rest(child))
         # a child that dies of its mutant crashed in a test
         status = "timeout" if not ended else state["status"] or "killed"
         return {"status": status, "by": None if status == "survived" else state["by"]}
