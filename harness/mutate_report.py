@@ -46,7 +46,7 @@ def difference(mutation: Mutation, result: Result) -> str:
     """Where a mutant is, its name for the list of equivalent ones, and a unified diff of the file."""
     mutant = result.mutant
     name = f"{Path(mutation.path).name}:{mutant.id}"
-    reached = f"{result.tests} tests reach it" if result.tests else "no test reaches it"
+    reached = f"reached by {result.tests} test{'s' * (result.tests != 1)}"
     before, after = (text.splitlines(keepends=True) for text in (mutation.text, mutant.apply(mutation.text)))
     diff = "".join(difflib.unified_diff(before, after, mutation.path, name, n=1))
     return f"{mutation.path}:{mutant.line}: {name}: {reached}\n{diff}"

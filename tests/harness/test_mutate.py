@@ -149,7 +149,7 @@ def test_survivors_are_those_that_no_test_can_tell(report):
 
 def test_a_survivor_is_shown_as_a_difference(report):
     done, _, _ = report
-    place = "shaders/blend.glsl:22: blend.glsl:unnoticed+2:14:arithmetic:+: 1 tests reach it\n"
+    place = "shaders/blend.glsl:22: blend.glsl:unnoticed+2:14:arithmetic:+: reached by 1 test\n"
     assert place in done.stdout
     _, _, after = done.stdout.partition(place)
     lines = after.split("\n")[:6]
