@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 NATIVE := $(wildcard harness/native/*.c harness/native/*.h) CMakeLists.txt
 SANITIZED := build/sanitize
+BRDF_TESTS := $(wildcard tests/shaders/test_brdf_*.py tests/shaders/test_shade*.py) tests/shaders/test_energy.py
 
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 EXTRA = import sys, tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"][sys.argv[1]], sep="\n")
@@ -17,7 +18,8 @@ define install_extra
 @touch $@
 endef
 
-.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive bench lint format build models textures clean
+.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation bench lint format build \
+        models textures clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -35,6 +37,12 @@ test-conformance: $(VENV)/.harness $(VENV)/.test ## the pictures of SHADERed its
 test-backends: $(VENV)/.harness $(VENV)/.test ## all tests by EGL, and by GLFW on a display of their own
 	HARNESS_BACKEND=egl $(BIN)/python -m pytest
 	HARNESS_BACKEND=glfw xvfb-run -a $(BIN)/python -m pytest
+
+# Each shader with the tests that know it, so that others need not be run to see that they do not use it.
+test-mutation: $(VENV)/.harness $(VENV)/.test ## whether the tests notice faults that are put into the shaders
+	$(BIN)/harness mutate shaders/color.glsl --tests tests/shaders/test_color.py
+	$(BIN)/harness mutate shaders/normal_map.glsl --tests tests/shaders/test_normal_map.py
+	$(BIN)/harness mutate shaders/brdf.glsl --tests $(BRDF_TESTS)
 
 test-sanitize: $(VENV)/bin/python ## the C library under AddressSanitizer and UBSan
 	cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_BUILD_TYPE=Debug -DHARNESS_TESTS=ON -DHARNESS_SANITIZE=ON

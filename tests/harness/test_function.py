@@ -8,12 +8,15 @@ import pydoc
 import re
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from glsl_values import assert_same_bits
 
 from harness import CallError
+from harness.call import Shader
+from harness.engine import engine
 
 TEXT = """
 // Scales v.
@@ -84,12 +87,10 @@ def test_modes_are_those_of_the_shader_and_of_with_mode(made):
     assert made.g.mode == "as-written"
 
 
-def test_what_is_compiled_once_is_compiled_for_all_that_share_a_file(made, monkeypatch):
-    from harness import function
-
+def test_what_is_compiled_once_is_compiled_for_all_that_share_a_file(made):
     compiled = []
-    engine = function._engine
-    monkeypatch.setattr(function, "_engine", lambda *given: compiled.append(given[1:]) or engine(*given))
+    watched = replace(made._library, engine=lambda *given: compiled.append(given[1:]) or engine(*given))
+    made = Shader(watched, "as-written")
     for f in (made.g, made.g.with_mode("as-written"), made["g(float)"], made.with_mode("as-written").g):
         assert f(2) == 2
     made.g.with_mode("precise")(2)

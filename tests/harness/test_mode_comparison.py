@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from harness import CallError, GlslError, dialect, function, mode_comparison
+from harness import CallError, GlslError, dialect, mode_comparison
+from harness.call import Shader
+from harness.engine import engine
 from harness.mode_comparison import ModeComparison
 
 TEXT = (
@@ -114,15 +118,13 @@ def test_no_evaluations_do_not_differ(made):
     assert ", 0 evaluations" in str(table)
 
 
-def test_a_mode_that_the_function_does_not_have_is_told_with_the_reason(made, monkeypatch):
-    engine = function._engine
-
+def test_a_mode_that_the_function_does_not_have_is_told_with_the_reason(made):
     def without_precise(source, signature, mode):
         if mode == "precise":
             raise GlslError("has no such version\nat all")
         return engine(source, signature, mode)
 
-    monkeypatch.setattr(function, "_engine", without_precise)
+    made = Shader(replace(made._library, engine=without_precise), "as-written")
     table = made.f.compare(1)
     assert "precise" not in table
     assert str(table).split("\n")[-1].split(maxsplit=3) == ["precise", "-", "-", "has no such version"]

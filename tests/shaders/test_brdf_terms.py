@@ -69,6 +69,13 @@ def test_V_is_finite_where_the_formula_divides_by_zero(library, mode):
     assert (got > 0).all()
 
 
+def test_V_is_the_formula_down_to_the_smallest_normal_number(library, mode):
+    """With NoL = 0 and alpha = 1 it is 0.5/NoV; what guards against 0 takes no part above 1.2e-38."""
+    NoV = np.float32([1.21e-38, 1.29e-38, 2e-38, 1e-37])
+    got = library("brdf.glsl", mode).V_SmithGGXCorrelated(0.0, NoV, 1.0)
+    assert_ulp(got, 0.5 / NoV.astype(float), max_ulp=3)
+
+
 def test_V_follows_from_smith_lambda():
     """The exercise's closed form is G2/(4 NoL NoV) with G2 = 1/(1 + Lambda_i + Lambda_o)."""
     for i, o, a in itertools.product((0.01, 0.3, 0.77, 1), (0.02, 0.5, 1), (0.001, 0.2, 1)):
@@ -106,6 +113,12 @@ def test_Hammons_V_is_his_formula(library, mode):
     larger = np.maximum(2 * NoL * NoV, NoL + NoV).astype(float)
     bound = 2 * want**2 * 4 * U * larger + 4 * U * want
     assert (np.abs(got - want) <= bound).all()
+
+
+def test_Hammons_V_is_finite_where_his_formula_divides_by_zero(library, mode):
+    got = library("brdf.glsl", mode).V_Hammon([0.0, 0.0, 1e-30], [0.0, 1.0, 1e-30], 0.0)
+    assert np.isfinite(got).all()
+    assert (got > 0).all()
 
 
 def test_Hammons_V_is_exact_at_alpha_one(library):

@@ -6,7 +6,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from harness import assert_ulp
+from harness import assert_ulp, ulp_difference
 
 CODES = np.arange(256, dtype=np.float32) / np.float32(255)
 #: 0, the ends of the linear pieces and their neighbours, 1, a sweep, and any
@@ -89,6 +89,31 @@ def test_every_code_survives_decoding_and_encoding(library, mode):
     np.testing.assert_array_equal(np.rint(back[:, 0] * 255), np.arange(256))
 
 
+@pytest.mark.parametrize(
+    ("function", "joint", "slope"),
+    [("srgb_to_linear", 0.04045, 1 / 12.92), ("linear_to_srgb", 0.0031308, 12.92)],
+)
+def test_the_pieces_join_where_the_standard_says(library, mode, function, joint, slope):
+    """IEC 61966-2-1: the straight piece up to the joint and including it, the power from there on.
+
+    The straight piece is one operation with one rounded constant: within 2 ulp. The other lies 7 ulp and more from it
+    at the joint; pow is coarse enough to come near it by chance, but not often.
+    """
+    color = library("color.glsl", mode, SRGB_DECODE="SRGB_PIECEWISE")
+    last_digit = 1e-5 if joint > 0.01 else 1e-7
+    around = np.linspace(joint - last_digit, joint + last_digit, 401).astype(np.float32)
+    around = np.unique(np.append(around, np.float32(joint)))
+    straight = ulp_difference(color[function](grey(around))[:, 0], around.astype(float) * slope) <= 2
+    assert straight[around <= np.float32(joint)].all()
+    assert straight[around > np.float32(joint)].mean() < 0.1
+
+
+def test_the_cubic_begins_with_its_slope(library, mode):
+    """2^-60 c rounds nothing, and the terms above the first are too small to take part."""
+    got = library("color.glsl", mode, SRGB_DECODE="SRGB_CUBIC").srgb_to_linear(grey([2.0**-60]))
+    np.testing.assert_array_equal(got, 2.0**-60 * grey([0.012522878]))
+
+
 @pytest.mark.parametrize("function", ["srgb_to_linear", "linear_to_srgb", "tone_map"])
 def test_what_lies_outside_is_cut_off(library, mode, function):
     got = library("color.glsl", mode)[function](grey([-1, -1e-30, 1.5, 1e30, np.inf]))
@@ -101,6 +126,11 @@ def test_reinhards_curve_is_his(library, mode):
     got = library("color.glsl", mode, TONE_CURVE="TONE_REINHARD").tone_map(grey(radiance))
     want = [mp.mpf(float(c)) * (1 + mp.mpf(float(c)) / 16) / (1 + mp.mpf(float(c))) for c in radiance]
     assert_ulp(got, grey(want), max_ulp=5)
+
+
+def test_reinhards_curve_begins_at_black(library, mode):
+    got = library("color.glsl", mode, TONE_CURVE="TONE_REINHARD").tone_map(grey([-1e30, -4, -1, -0.5, -1e-30, 0]))
+    assert (got == 0).all()
 
 
 def test_reinhards_curve_ends_at_white(library, mode):

@@ -15,7 +15,8 @@ from harness.interpretation import Interpretation
 def interpreted(function, precision="float32"):
     """The function of another shader object, evaluated by the interpreter."""
     (signature,) = function.signatures
-    function._compiled[signature] = Interpretation(function._library.source, signature, precision)
+    library = function._library
+    library.compiled[signature, function.mode] = Interpretation(library.source, signature, precision)
     return function
 
 

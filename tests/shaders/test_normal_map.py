@@ -43,9 +43,30 @@ def test_a_texel_bends_the_normal_in_the_tangent_frame(library, mode, frame, han
     n, t = (np.float32(a) for a in frame)
     n /= np.linalg.norm(n)
     texels = TEXELS + ANY
-    got = library("normal_map.glsl", mode).perturb_normal_mirrored(n, t, handedness, [texel(*b) for b in texels])
-    want = [perturbed(map(float, n), map(float, t), handedness, b) for b in texels]
-    np.testing.assert_allclose(got, np.array(want, float), rtol=0, atol=VECTOR_ATOL)
+    normal_map = library("normal_map.glsl", mode)
+    want = np.array([perturbed(map(float, n), map(float, t), handedness, b) for b in texels], float)
+    texels = [texel(*b) for b in texels]
+    got = normal_map.perturb_normal_mirrored(n, t, handedness, texels)
+    np.testing.assert_allclose(got, want, rtol=0, atol=VECTOR_ATOL)
+    if handedness == 1:
+        np.testing.assert_allclose(normal_map.perturb_normal(n, t, texels), want, rtol=0, atol=VECTOR_ATOL)
+
+
+def test_a_tangent_may_have_any_length(library, mode):
+    """From 1e-15, whose square is just above what guards against a zero tangent, to 1e18, whose square is a float."""
+    n, t, bytes_ = np.float32([0.6, 0, 0.8]), np.float32([0.8, 0, -0.6]), (200, 90, 240)
+    lengths = np.float32([1.01e-15, 1e-10, 1e-3, 1, 1e3, 1e18])
+    got = library("normal_map.glsl", mode).perturb_normal(n, lengths[:, None] * t, texel(*bytes_))
+    want = perturbed(map(float, n), map(float, t), 1, bytes_)
+    np.testing.assert_allclose(got, np.tile(np.array(want, float), (len(lengths), 1)), rtol=0, atol=VECTOR_ATOL)
+
+
+def test_the_outside_begins_at_the_smallest_step_of_a_byte(library, mode):
+    """Blue at and below 128, which stands for 0 and for the inside, counts as 129 does: 1/127."""
+    blue = np.arange(0, 130)
+    got = library("normal_map.glsl", mode).decode_normal(texel(*np.stack(np.broadcast_arrays(9, 250, blue)).tolist()).T)
+    # 129 itself is 1 after a product and a difference off by the rounding of the product, half an ulp of 129
+    np.testing.assert_allclose(got[:, 2], 1 / 127, rtol=129 * 3 * U, atol=0)
 
 
 def test_byte_128_is_exactly_zero(library, mode):

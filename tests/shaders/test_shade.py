@@ -157,6 +157,31 @@ def test_a_mirror_shows_its_diffuse_part_alone(library, mode):
     assert_ulp(got, (1 - 0.04) * albedo.astype(float) / np.pi, max_ulp=6)
 
 
+def test_a_mirrors_highlight_grows_as_the_model_says_until_it_is_cut_off(library, mode):
+    """With h = n and l = v = n it is D/4 = 1/(4 pi alpha^2): never more, and within a fifth up to D = 1.2e36."""
+    roughness = np.float32([7.1e-10, 1e-9, 1e-8, 1e-6, 1e-4, 1e-2])
+    alpha = roughness.astype(float) ** 2
+    got = library("brdf.glsl", mode).shade(
+        [0, 0, 1], [0, 0, 1], [0, 0, 1], {"albedo": [1, 1, 1], "metalness": 1, "roughness": roughness}
+    )[:, 0]
+    share = got * (4 * np.pi * alpha**2)
+    assert (share <= 1 + 12 * U).all()
+    assert (share >= 0.8).all()
+    assert (share[3:] >= 1 - 12 * U).all()
+
+
+def test_what_is_beyond_1e37_is_1e37(library, mode):
+    """A white metal, h = n almost, at both horizons: F is 1, the model beyond all floats."""
+    l, v, n = np.float32([[0.6, 0.8, 5.4e-6], [-0.6, -0.8, 1e-37], [0, 0, 1]])  # noqa: E741
+    white = reference.Material((1.0, 1.0, 1.0), 1.0, float(np.float32(3e-8)))
+    want = reference.shade(*(reference.vector(*map(float, a)) for a in (l, v, n)), white)
+    assert min(want) > mp.mpf("1e38")
+    got = library("brdf.glsl", mode).shade(
+        l, v, n, {"albedo": [1, 1, 1], "metalness": 1, "roughness": np.float32(3e-8)}
+    )
+    np.testing.assert_array_equal(got, np.full(3, 1e37, np.float32))
+
+
 def test_metals_have_no_diffuse_part(library, mode):
     """Far from the mirror direction a smooth metal is dark, whatever its colour."""
     l, v = reference.rounded(reference.direction(0.9, 0)), reference.rounded(reference.direction(0.5, 0))  # noqa: E741
