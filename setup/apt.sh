@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs the Debian packages that are missing, saying what each is for. Usage: setup/apt.sh [bench]
+# Installs the Debian packages that are missing, saying what each is for. Usage: setup/apt.sh [bench|cost]
 set -euo pipefail
 
 packages=(
@@ -17,6 +17,9 @@ packages=(
 )
 if [ "${1:-}" = bench ]; then
     packages+=("libegl1|moderngl's context, to compare with" "libgl1-mesa-dri|the driver under it")
+fi
+if [ "${1:-}" = cost ]; then
+    packages+=("libvulkan-dev|asks a driver what it compiles" "mesa-vulkan-drivers|compiles for GPUs that are not there")
 fi
 
 missing=()

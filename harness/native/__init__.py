@@ -101,6 +101,7 @@ _PROTOTYPES = {
     "hn_glsl_check": (_INT, [_INT, _TEXT, _INT]),
     "hn_glsl_preprocess": (_POINTER, [_INT, _TEXT]),
     "hn_glsl_tree": (_POINTER, [_INT, _TEXT]),
+    "hn_spirv_vulkan": (_POINTER, [_INT, _TEXT, ctypes.POINTER(_SIZE)]),
     "hn_program_create": (_UINT, [_TEXT, _TEXT]),
     "hn_program_delete": (None, [_UINT]),
     "hn_program_uniforms": (_INT, [_UINT, _VARIABLES, _INT]),
@@ -203,6 +204,15 @@ def glsl_preprocess(stage: Stage, text: str) -> str:
 def glsl_tree(stage: Stage, text: str) -> str:
     """glslang's dump of the syntax tree, uncalled functions included."""
     return _take_text(_library.hn_glsl_tree(stage, text.encode()))
+
+
+def spirv_vulkan(stage: Stage, text: str) -> np.ndarray:
+    """The stage as SPIR-V for Vulkan: its words, uint32."""
+    count = _SIZE()
+    pointer = _made(_library.hn_spirv_vulkan(stage, text.encode(), ctypes.byref(count)))
+    words = np.frombuffer(ctypes.string_at(pointer, 4 * count.value), np.uint32)
+    _library.hn_free(pointer)
+    return words
 
 
 def evaluate_vertex() -> str:

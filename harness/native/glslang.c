@@ -12,8 +12,19 @@ enum { DEFAULT_VERSION = 330 };
 
 /* Whose rules a text is held to. The difference is more than the rules: with SPIR-V as the target glslang
  * defines GL_SPIRV, which no driver does, so a text on its way to the driver must not be preprocessed for
- * SPIR-V. */
-typedef enum { FOR_DRIVER, FOR_SPIRV } target;
+ * SPIR-V. Vulkan's rules are relaxed here: a uniform needs no block. */
+typedef enum { FOR_DRIVER, FOR_SPIRV, FOR_VULKAN } target;
+
+static glslang_client_t client(target rules) {
+    switch (rules) {
+    case FOR_SPIRV:
+        return GLSLANG_CLIENT_OPENGL;
+    case FOR_VULKAN:
+        return GLSLANG_CLIENT_VULKAN;
+    default:
+        return GLSLANG_CLIENT_NONE;
+    }
+}
 
 /* A failure with glslang's log, without the blank lines around it. */
 static int fail_with_log(const char *operation, const char *log) {
@@ -41,15 +52,16 @@ static int describe(const char *operation, hn_stage stage, const char *text, tar
     *input = (glslang_input_t){
         .language = GLSLANG_SOURCE_GLSL,
         .stage = stage == HN_VERTEX ? GLSLANG_STAGE_VERTEX : GLSLANG_STAGE_FRAGMENT,
-        .client = rules == FOR_SPIRV ? GLSLANG_CLIENT_OPENGL : GLSLANG_CLIENT_NONE,
-        .client_version = GLSLANG_TARGET_OPENGL_450,
-        .target_language = rules == FOR_SPIRV ? GLSLANG_TARGET_SPV : GLSLANG_TARGET_NONE,
+        .client = client(rules),
+        .client_version = rules == FOR_VULKAN ? GLSLANG_TARGET_VULKAN_1_0 : GLSLANG_TARGET_OPENGL_450,
+        .target_language = rules == FOR_DRIVER ? GLSLANG_TARGET_NONE : GLSLANG_TARGET_SPV,
         .target_language_version = GLSLANG_TARGET_SPV_1_0,
         .code = text,
         .default_version = DEFAULT_VERSION,
         .default_profile = GLSLANG_NO_PROFILE,
         /* Without cascading, glslang stops at the first error. */
-        .messages = GLSLANG_MSG_CASCADING_ERRORS_BIT | (rules == FOR_SPIRV ? GLSLANG_MSG_SPV_RULES_BIT : 0),
+        .messages = GLSLANG_MSG_CASCADING_ERRORS_BIT | (rules == FOR_DRIVER ? 0 : GLSLANG_MSG_SPV_RULES_BIT) |
+                    (rules == FOR_VULKAN ? GLSLANG_MSG_VULKAN_RULES_BIT : 0),
         .resource = glslang_default_resource(),
     };
     return 0;
@@ -64,7 +76,10 @@ static glslang_shader_t *preprocess(const char *operation, const glslang_input_t
     }
     /* Locations are given out as SHADERed has it done. Bindings are not: it refuses a uniform block without
      * one. */
-    glslang_shader_set_options(shader, GLSLANG_SHADER_AUTO_MAP_LOCATIONS);
+    int options = GLSLANG_SHADER_AUTO_MAP_LOCATIONS;
+    if (input->client == GLSLANG_CLIENT_VULKAN)
+        options |= GLSLANG_SHADER_AUTO_MAP_BINDINGS | GLSLANG_SHADER_VULKAN_RULES_RELAXED;
+    glslang_shader_set_options(shader, options);
     if (!glslang_shader_preprocess(shader, input)) {
         fail_with_log(operation, glslang_shader_get_info_log(shader));
         glslang_shader_delete(shader);
@@ -84,21 +99,27 @@ static glslang_shader_t *parse(const char *operation, const glslang_input_t *inp
     return shader;
 }
 
-static int generate_spirv(const char *operation, glslang_shader_t *shader, const glslang_input_t *input) {
+/* A program with the SPIR-V of the shader, or NULL. */
+static glslang_program_t *generate_spirv(const char *operation, glslang_shader_t *shader,
+                                         const glslang_input_t *input) {
     glslang_program_t *program = glslang_program_create();
-    if (!program)
-        return hn_fail("%s: glslang makes no program", operation);
+    if (!program) {
+        hn_fail("%s: glslang makes no program", operation);
+        return NULL;
+    }
     glslang_program_add_shader(program, shader);
-    int result = 0;
+    const char *log = NULL;
     if (!glslang_program_link(program, (int)input->messages) || !glslang_program_map_io(program)) {
-        result = fail_with_log(operation, glslang_program_get_info_log(program));
+        log = glslang_program_get_info_log(program);
     } else {
         glslang_program_SPIRV_generate(program, input->stage);
-        if (glslang_program_SPIRV_get_size(program) == 0)
-            result = fail_with_log(operation, glslang_program_SPIRV_get_messages(program));
+        if (glslang_program_SPIRV_get_size(program) > 0)
+            return program;
+        log = glslang_program_SPIRV_get_messages(program);
     }
+    fail_with_log(operation, log);
     glslang_program_delete(program);
-    return result;
+    return NULL;
 }
 
 int hn_glsl_check(hn_stage stage, const char *text, int spirv) {
@@ -109,9 +130,38 @@ int hn_glsl_check(hn_stage stage, const char *text, int spirv) {
     glslang_shader_t *shader = parse(operation, &input);
     if (!shader)
         return -1;
-    int result = spirv ? generate_spirv(operation, shader, &input) : 0;
+    glslang_program_t *program = spirv ? generate_spirv(operation, shader, &input) : NULL;
+    int result = spirv && !program ? -1 : 0;
+    if (program)
+        glslang_program_delete(program);
     glslang_shader_delete(shader);
     return result;
+}
+
+uint32_t *hn_spirv_vulkan(hn_stage stage, const char *text, size_t *n_words) {
+    const char *operation = "hn_spirv_vulkan";
+    *n_words = 0;
+    glslang_input_t input;
+    if (describe(operation, stage, text, FOR_VULKAN, &input))
+        return NULL;
+    glslang_shader_t *shader = parse(operation, &input);
+    if (!shader)
+        return NULL;
+    uint32_t *words = NULL;
+    glslang_program_t *program = generate_spirv(operation, shader, &input);
+    if (program) {
+        size_t size = glslang_program_SPIRV_get_size(program);
+        words = malloc(size * sizeof *words);
+        if (words) {
+            glslang_program_SPIRV_get(program, words);
+            *n_words = size;
+        } else {
+            hn_fail("%s: out of memory", operation);
+        }
+        glslang_program_delete(program);
+    }
+    glslang_shader_delete(shader);
+    return words;
 }
 
 static char *copy(const char *operation, const char *text) {

@@ -56,6 +56,9 @@ char *hn_glsl_preprocess(hn_stage stage, const char *text);
 /* glslang's dump of the syntax tree, uncalled functions included: function signatures with in/out, parameter
  * and member names. `text` needs no main(). */
 char *hn_glsl_tree(hn_stage stage, const char *text);
+/* One stage as SPIR-V for Vulkan 1.0, `n_words` words of it, for hn_free(). Locations and bindings that the text
+ * does not give are given out, and its plain uniforms go into a block. */
+uint32_t *hn_spirv_vulkan(hn_stage stage, const char *text, size_t *n_words);
 
 /* ---- Programs (program.c) ------------------------------------------------------------------------------ */
 
