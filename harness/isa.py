@@ -102,7 +102,8 @@ def _difference(target: str, whole: dict[str, Any], null: dict[str, Any]) -> Cos
 # ---- The driver's model of the chip, from the assembly --------------------------------------------------------------
 
 _BLOCK = re.compile(r"^BB\d+:", re.MULTILINE)
-_VECTOR = re.compile(r"^\s+(v_\w+)", re.MULTILINE)
+#: a vector instruction, and how often the listing says that it comes again
+_VECTOR = re.compile(r"^\t(v_\w+).*(?:\n\t\(then repeated (\d+) times\))?", re.MULTILINE)
 _TRANSCENDENTAL = re.compile(r"v_(rcp|sqrt|rsq|exp|log|sin|cos)_")
 _INTEGER_PRODUCT = re.compile(r"v_mul_(lo|hi)_[iu]32")
 _GCN = ("tahiti", "polaris10", "vega10")
@@ -127,7 +128,7 @@ def _inverse_throughput(target: str, compiled: dict[str, Any]) -> int:
 
 def vector_cycles(assembly: str, target: str) -> int:
     """Cycles that the instructions of all blocks take of the busiest vector unit."""
-    instructions = _VECTOR.findall(assembly)
+    instructions = [name for name, again in _VECTOR.findall(assembly) for _ in range(1 + int(again or 0))]
     transcendental = sum(bool(_TRANSCENDENTAL.match(i)) for i in instructions)
     products = sum(bool(_INTEGER_PRODUCT.match(i)) for i in instructions)
     if target in _GCN:

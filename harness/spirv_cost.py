@@ -22,6 +22,7 @@ DIVISION = 5.0
 _EXT_INST, _ENTRY_POINT, _CALL = 12, 15, 57
 _TYPE_VECTOR, _TYPE_MATRIX = 23, 24
 _CONSTANTS = (43, 44)  # scalar, composite
+_CONSTRUCT = 80  # a vector of parts
 _FUNCTION, _FUNCTION_END = 54, 56
 _DIVISIONS = {134, 135, 136}  # unsigned, signed, float
 _REMAINDERS = {137, 138, 139, 140, 141}
@@ -95,6 +96,8 @@ class _Module:
                 current = operands[1]
                 self._own[current], self.calls[current] = 0.0, []
             elif code in _CONSTANTS:
+                self._constants.add(operands[1])
+            elif code == _CONSTRUCT and self._constants.issuperset(operands[2:]):
                 self._constants.add(operands[1])
             elif current and code == _CALL:
                 self.calls[current].append(operands[2])
