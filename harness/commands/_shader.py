@@ -18,7 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-I", "--include", action="append", default=[], metavar="DIR", help="where includes are looked for"
     )
-    parser.add_argument("--mode", default="as-written", help="as-written (default) or precise")
+    parser.add_argument("--mode", default="as-written", help="the arithmetic: as-written (default), precise")
 
 
 def load(options: argparse.Namespace) -> Shader:
