@@ -97,11 +97,6 @@ class Function:
         """The overloads."""
         return tuple(self._overloads)
 
-    @property
-    def source(self) -> glsl.Source:
-        """The text that it stands in, as the compiler gets it."""
-        return self._source
-
     def __call__(self, *args, **kwargs):
         """Evaluates the function for every element of the arguments' common batch.
 

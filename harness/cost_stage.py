@@ -14,6 +14,7 @@ from . import native, spirv
 from .call import Function
 from .errors import CallError, NativeError
 from .evaluation import Leaf, leaves
+from .glsl import Source
 from .native import Stage
 from .signature import VOID, Numeric, Signature
 
@@ -41,7 +42,7 @@ def stages(function: Function) -> Stages:
     """
     if len(function.signatures) > 1:
         listed = "".join(f"\n    {s}" for s in function.signatures)
-        raise CallError(f"{function.__name__} is overloaded, so its cost is not one:{listed}", function.source.path)
+        raise CallError(f"{function.__name__} is overloaded, so its cost is not one:{listed}", _source(function).path)
     (signature,) = function.signatures
     if function._mode != "as-written":
         raise CallError(f"costs are those of the source as written, not of mode {function._mode!r}", *signature.origin)
@@ -50,9 +51,9 @@ def stages(function: Function) -> Stages:
     except CallError as error:
         raise CallError(f"{error.message}; it is {signature}", *signature.origin) from None
     try:
-        fragment = native.spirv_vulkan(Stage.FRAGMENT, _raised(function.source.text) + interface.call())
+        fragment = native.spirv_vulkan(Stage.FRAGMENT, _raised(_source(function).text) + interface.call())
     except NativeError as error:
-        raise function.source.error(str(error)) from None
+        raise _source(function).error(str(error)) from None
     if spirv.reads_resources(fragment):
         message = f"{signature} reads uniforms or textures, and only what reads none can be counted"
         raise CallError(message, *signature.origin)
@@ -61,6 +62,11 @@ def stages(function: Function) -> Stages:
         fragment,
         native.spirv_vulkan(Stage.FRAGMENT, interface.null()),
     )
+
+
+def _source(function: Function) -> Source:
+    """The text that a function stands in, as the compiler gets it."""
+    return function._source
 
 
 def _raised(text: str) -> str:
