@@ -3,7 +3,7 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-NATIVE := $(wildcard harness/native/*.c harness/native/*.h) CMakeLists.txt
+NATIVE := $(wildcard harness/native/*.c harness/native/*.h harness/native/cost/*.[ch]) CMakeLists.txt
 SANITIZED := build/sanitize
 BRDF_TESTS := $(wildcard tests/shaders/test_brdf_*.py tests/shaders/test_shade*.py) tests/shaders/test_energy.py
 
@@ -18,8 +18,8 @@ define install_extra
 @touch $@
 endef
 
-.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation bench lint format build \
-        models textures clean
+.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation bench cost lint format \
+        build models textures clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -55,15 +55,18 @@ test-exhaustive: $(VENV)/.harness $(VENV)/.test ## functions of one float at eve
 bench: $(VENV)/.harness $(VENV)/.bench ## speed and memory, beside numpy, numba and moderngl
 	$(BIN)/python -m bench
 
+cost: $(VENV)/.cost ## what the shading model costs on GPUs, none needed
+	$(BIN)/harness cost shaders/brdf.glsl shade
+
 lint: $(VENV)/.lint ## format and static checks
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/clang-format --dry-run -Werror harness/native/*.[ch] tests/native/*.[ch]
+	$(BIN)/clang-format --dry-run -Werror harness/native/*.[ch] harness/native/cost/*.[ch] tests/native/*.[ch]
 
 format: $(VENV)/.lint ## put the format right
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
-	$(BIN)/clang-format -i harness/native/*.[ch] tests/native/*.[ch]
+	$(BIN)/clang-format -i harness/native/*.[ch] harness/native/cost/*.[ch] tests/native/*.[ch]
 
 build: $(VENV)/.harness ## the native library and the Python package
 
@@ -98,6 +101,12 @@ $(VENV)/.test: pyproject.toml setup/apt.sh | $(VENV)/.harness
 $(VENV)/.bench: pyproject.toml | $(VENV)/.test
 	@./setup/apt.sh bench
 	$(call install_extra,bench)
+
+# Built again with what is there now: the tests of costs run from then on, and are skipped before.
+$(VENV)/.cost: | $(VENV)/.harness
+	@./setup/apt.sh cost
+	@$(PIP) --editable .
+	@touch $@
 
 $(VENV)/.lint: pyproject.toml | $(VENV)/bin/python
 	$(call install_extra,lint)

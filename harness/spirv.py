@@ -6,7 +6,7 @@ is named; any other instruction is kept with its number.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -155,6 +155,15 @@ def _text(words: list[int]) -> str:
     return b"".join(w.to_bytes(4, "little") for w in words).split(b"\0", 1)[0].decode(errors="replace")
 
 
+def instructions(words: Sequence[int]) -> Iterator[tuple[int, list[int]]]:
+    """Opcode and operands of each instruction of a module, a list of words."""
+    place = _HEADER
+    while place < len(words):
+        length, opcode = words[place] >> 16, words[place] & 0xFFFF
+        yield opcode, words[place + 1 : place + length]
+        place += length
+
+
 class _Reader:
     """Fills a module, instruction by instruction."""
 
@@ -168,7 +177,7 @@ class _Reader:
         self.block: Block | None = None
 
     def read(self) -> Module:
-        for opcode, operands in self._instructions():
+        for opcode, operands in instructions(self.words):
             if opcode == NAME:
                 self.names[operands[0]] = _text(operands[1:])
             elif opcode == MEMBER_NAME:
@@ -191,13 +200,6 @@ class _Reader:
             elif self.function and opcode != SELECTION_MERGE:
                 self.block.instructions.append(Instruction(opcode, None, 0, tuple(operands), self.line))
         return self.module
-
-    def _instructions(self) -> Iterator[tuple[int, list[int]]]:
-        place = _HEADER
-        while place < len(self.words):
-            length, opcode = self.words[place] >> 16, self.words[place] & 0xFFFF
-            yield opcode, self.words[place + 1 : place + length]
-            place += length
 
     def _type(self, opcode: int, result: int, *rest: int) -> None:
         types = self.module.types

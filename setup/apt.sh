@@ -1,5 +1,5 @@
 #!/bin/bash
-# Installs the Debian packages that are missing, saying what each is for. Usage: setup/apt.sh [test|bench]
+# Installs the Debian packages that are missing, saying what each is for. Usage: setup/apt.sh [test|bench|cost]
 set -euo pipefail
 
 packages=(
@@ -22,6 +22,9 @@ if [ "${1:-}" = test ] || [ "${1:-}" = bench ]; then
 fi
 if [ "${1:-}" = test ]; then
     packages+=("xvfb|a display for the windows of tests" "xauth|lets programs onto it")
+fi
+if [ "${1:-}" = cost ]; then
+    packages+=("libvulkan-dev|asks a driver what it compiles" "mesa-vulkan-drivers|compiles for GPUs that are not there")
 fi
 
 missing=()

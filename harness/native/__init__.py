@@ -8,7 +8,7 @@ from __future__ import annotations
 import ctypes
 import enum
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -107,6 +107,7 @@ _PROTOTYPES = {
     "hn_glsl_tree": (_POINTER, [_INT, _TEXT]),
     "hn_glsl_spirv": (_INT, [_INT, _TEXT, ctypes.POINTER(_POINTER), ctypes.POINTER(_SIZE)]),
     "hn_glsl_version": (_TEXT, []),
+    "hn_glsl_spirv_vulkan": (_INT, [_INT, _TEXT, ctypes.POINTER(_POINTER), ctypes.POINTER(_SIZE)]),
     "hn_program_create": (_UINT, [_TEXT, _TEXT]),
     "hn_program_delete": (None, [_UINT]),
     "hn_program_uniforms": (_INT, [_UINT, _VARIABLES, _INT]),
@@ -245,12 +246,21 @@ def glsl_tree(stage: Stage, text: str) -> str:
 
 
 def glsl_spirv(stage: Stage, text: str) -> np.ndarray:
-    """The words (uint32) of a stage with a main() as SPIR-V: what main() reaches, not optimised, with names."""
+    """A stage with a main() as SPIR-V, uint32 words: what main() reaches, not optimised, with names and lines."""
+    return _spirv(_library.hn_glsl_spirv, stage, text)
+
+
+def glsl_spirv_vulkan(stage: Stage, text: str) -> np.ndarray:
+    """The same for Vulkan, without lines."""
+    return _spirv(_library.hn_glsl_spirv_vulkan, stage, text)
+
+
+def _spirv(function: Callable, stage: Stage, text: str) -> np.ndarray:
     words, count = _POINTER(), _SIZE()
-    _done(_library.hn_glsl_spirv(stage, text.encode(), ctypes.byref(words), ctypes.byref(count)))
-    taken = np.frombuffer(ctypes.string_at(words.value, count.value * 4), np.uint32)
+    _done(function(stage, text.encode(), ctypes.byref(words), ctypes.byref(count)))
+    copied = np.frombuffer(ctypes.string_at(words, 4 * count.value), np.uint32)
     _library.hn_free(words)
-    return taken
+    return copied
 
 
 def evaluate_vertex() -> str:

@@ -13,8 +13,19 @@ enum { DEFAULT_VERSION = 330 };
 
 /* Whose rules a text is held to. The difference is more than the rules: with SPIR-V as the target glslang
  * defines GL_SPIRV, which no driver does, so a text on its way to the driver must not be preprocessed for
- * SPIR-V. */
-typedef enum { FOR_DRIVER, FOR_SPIRV } target;
+ * SPIR-V. Vulkan's rules are relaxed here: a uniform needs no block. */
+typedef enum { FOR_DRIVER, FOR_SPIRV, FOR_VULKAN } target;
+
+static glslang_client_t client(target rules) {
+    switch (rules) {
+    case FOR_SPIRV:
+        return GLSLANG_CLIENT_OPENGL;
+    case FOR_VULKAN:
+        return GLSLANG_CLIENT_VULKAN;
+    default:
+        return GLSLANG_CLIENT_NONE;
+    }
+}
 
 /* A failure with glslang's log, without the blank lines around it. */
 static int fail_with_log(const char *operation, const char *log) {
@@ -42,15 +53,16 @@ static int describe(const char *operation, hn_stage stage, const char *text, tar
     *input = (glslang_input_t){
         .language = GLSLANG_SOURCE_GLSL,
         .stage = stage == HN_VERTEX ? GLSLANG_STAGE_VERTEX : GLSLANG_STAGE_FRAGMENT,
-        .client = rules == FOR_SPIRV ? GLSLANG_CLIENT_OPENGL : GLSLANG_CLIENT_NONE,
-        .client_version = GLSLANG_TARGET_OPENGL_450,
-        .target_language = rules == FOR_SPIRV ? GLSLANG_TARGET_SPV : GLSLANG_TARGET_NONE,
+        .client = client(rules),
+        .client_version = rules == FOR_VULKAN ? GLSLANG_TARGET_VULKAN_1_0 : GLSLANG_TARGET_OPENGL_450,
+        .target_language = rules == FOR_DRIVER ? GLSLANG_TARGET_NONE : GLSLANG_TARGET_SPV,
         .target_language_version = GLSLANG_TARGET_SPV_1_0,
         .code = text,
         .default_version = DEFAULT_VERSION,
         .default_profile = GLSLANG_NO_PROFILE,
         /* Without cascading, glslang stops at the first error. */
-        .messages = GLSLANG_MSG_CASCADING_ERRORS_BIT | (rules == FOR_SPIRV ? GLSLANG_MSG_SPV_RULES_BIT : 0),
+        .messages = GLSLANG_MSG_CASCADING_ERRORS_BIT | (rules == FOR_DRIVER ? 0 : GLSLANG_MSG_SPV_RULES_BIT) |
+                    (rules == FOR_VULKAN ? GLSLANG_MSG_VULKAN_RULES_BIT : 0),
         .resource = glslang_default_resource(),
     };
     return 0;
@@ -135,26 +147,27 @@ int hn_glsl_check(hn_stage stage, const char *text, int spirv) {
     return result;
 }
 
-int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_words) {
-    const char *operation = "hn_glsl_spirv";
+/* A stage as SPIR-V. `shader_options` are of glslang_shader_options_t, `messages` are added to the input's. */
+static int to_spirv(const char *operation, hn_stage stage, const char *text, target rules, int messages,
+                    int shader_options, glslang_spv_options_t options, uint32_t **words, size_t *n_words) {
+    *n_words = 0;
     glslang_input_t input;
-    if (describe(operation, stage, text, FOR_SPIRV, &input))
+    if (describe(operation, stage, text, rules, &input))
         return -1;
-    /* The debug bit has the parser keep the lines, which the generator then writes down. Uncalled functions are
-     * not kept: where one calls a function without a body, the generator crashes. */
-    input.messages |= GLSLANG_MSG_DEBUG_INFO_BIT;
+    input.messages |= messages;
     glslang_shader_t *shader =
-        parse_with(operation, &input, GLSLANG_SHADER_AUTO_MAP_LOCATIONS | GLSLANG_SHADER_AUTO_MAP_BINDINGS);
+        parse_with(operation, &input,
+                   GLSLANG_SHADER_AUTO_MAP_LOCATIONS | GLSLANG_SHADER_AUTO_MAP_BINDINGS | shader_options);
     if (!shader)
         return -1;
-    glslang_spv_options_t options = {.generate_debug_info = true, .disable_optimizer = true};
     glslang_program_t *program = generate_spirv(operation, shader, &input, options);
     int result = -1;
     if (program) {
-        *n_words = glslang_program_SPIRV_get_size(program);
-        *words = malloc(*n_words * sizeof **words);
+        size_t size = glslang_program_SPIRV_get_size(program);
+        *words = malloc(size * sizeof **words);
         if (*words) {
             glslang_program_SPIRV_get(program, *words);
+            *n_words = size;
             result = 0;
         } else {
             hn_fail("%s: out of memory", operation);
@@ -163,6 +176,20 @@ int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_
     }
     glslang_shader_delete(shader);
     return result;
+}
+
+int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_words) {
+    /* The debug bit has the parser keep the lines, which the generator then writes down. Uncalled functions are
+     * not kept: where one calls a function without a body, the generator crashes. */
+    glslang_spv_options_t options = {.generate_debug_info = true, .disable_optimizer = true};
+    return to_spirv("hn_glsl_spirv", stage, text, FOR_SPIRV, GLSLANG_MSG_DEBUG_INFO_BIT, 0, options, words,
+                    n_words);
+}
+
+int hn_glsl_spirv_vulkan(hn_stage stage, const char *text, uint32_t **words, size_t *n_words) {
+    glslang_spv_options_t options = {.disable_optimizer = true};
+    return to_spirv("hn_glsl_spirv_vulkan", stage, text, FOR_VULKAN, 0, GLSLANG_SHADER_VULKAN_RULES_RELAXED,
+                    options, words, n_words);
 }
 
 static char *copy(const char *operation, const char *text) {

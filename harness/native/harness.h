@@ -68,6 +68,8 @@ char *hn_glsl_tree(hn_stage stage, const char *text);
 int hn_glsl_spirv(hn_stage stage, const char *text, uint32_t **words, size_t *n_words);
 /* The version of glslang, as "12.0.0". */
 const char *hn_glsl_version(void);
+/* The same for Vulkan 1.0, without lines; plain uniforms go into a block. */
+int hn_glsl_spirv_vulkan(hn_stage stage, const char *text, uint32_t **words, size_t *n_words);
 
 /* ---- Programs (program.c) ------------------------------------------------------------------------------ */
 
