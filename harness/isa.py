@@ -22,19 +22,10 @@ import numpy as np
 
 from . import cost_stage, native
 from .call import Function
+from .chips import CHIPS, TARGETS
 from .errors import NativeError
 
 #: chips that the driver compiles for -> GPUs that have their instructions
-CHIPS = {
-    "tahiti": "GCN 1: Radeon HD 7900",
-    "polaris10": "GCN 4: Radeon RX 480, PlayStation 4 Pro",
-    "vega10": "GCN 5: Radeon RX Vega",
-    "navi10": "RDNA 1: Radeon RX 5700",
-    "navi21": "RDNA 2: Radeon RX 6800, PlayStation 5, Xbox Series, Steam Deck",
-    "gfx1100": "RDNA 3: Radeon RX 7900",
-}
-TARGETS = ("vega10", "navi21", "gfx1100")
-
 PROGRAM_VARIABLE = "HARNESS_ISA"  # names another build of the program, e.g. with sanitizers
 SECONDS = 60.0
 

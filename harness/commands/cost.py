@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
+from ..chips import CHIPS, TARGETS
 from . import _shader
 
 SHORT = "count what a GLSL function costs on GPUs"
@@ -21,8 +22,6 @@ model of the chip, and vector registers (of the whole shader). The last line is 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The file, the function and the chips."""
-    from ..isa import CHIPS, TARGETS
-
     _shader.add_arguments(parser)
     parser.add_argument("function", metavar="FUNCTION", help="its name")
     parser.add_argument(

@@ -154,7 +154,7 @@ static int to_spirv(const char *operation, hn_stage stage, const char *text, tar
     glslang_input_t input;
     if (describe(operation, stage, text, rules, &input))
         return -1;
-    input.messages |= messages;
+    input.messages = (glslang_messages_t)((int)input.messages | messages);
     glslang_shader_t *shader =
         parse_with(operation, &input,
                    GLSLANG_SHADER_AUTO_MAP_LOCATIONS | GLSLANG_SHADER_AUTO_MAP_BINDINGS | shader_options);
