@@ -53,6 +53,7 @@ def assert_ulp(
     the worst input and a command that repeats it alone. ``want`` and the tolerances are numbers, or have the
     dimensions of ``got``, each as long or 1. Of NaN, zeros and denormals see the module. AssertionError, CompareError.
     """
+    __tracebackhide__ = True  # pytest shows the test's own line
     kind = precision_named(precision)
 
     def judge(g: np.ndarray, w: np.ndarray, sides: _Sides) -> Comparison:
@@ -83,6 +84,7 @@ def assert_close(
 
     Both are 0 unless given. All else is as with ``assert_ulp``; ``precision`` says which numbers are denormal.
     """
+    __tracebackhide__ = True  # pytest shows the test's own line
     kind = precision_named(precision)
 
     def judge(g: np.ndarray, w: np.ndarray, sides: _Sides) -> Comparison:
@@ -115,6 +117,7 @@ class _Sides:
 
 
 def _compare(got: Any, want: Any, inputs: Mapping[str, Any] | None, judge: Callable) -> None:
+    __tracebackhide__ = True  # pytest shows the test's own line
     function, batch = None, None
     if callable(got):
         function, batch = got, _batch(got, inputs)

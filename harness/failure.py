@@ -30,6 +30,7 @@ class Comparison:
 
 def fail(comparisons: Sequence[Comparison], function: Function | None = None, batch: Batch | None = None) -> None:
     """AssertionError when anything is bad; the message shows the worst of all, in the results' order where equal."""
+    __tracebackhide__ = True  # pytest shows the test's own line
     failed = [c for c in comparisons if c.bad.any()]
     if not failed:
         return

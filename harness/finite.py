@@ -37,6 +37,7 @@ def assert_finite(
     ``may_overflow`` may be infinite, though not NaN: what is meant to be cut off. The message names the value, its file
     and line, and the input, and has the command that repeats it. AssertionError, or DomainError.
     """
+    __tracebackhide__ = True  # pytest shows the test's own line
     batch = inputs_of(f, domain, n, seed)
     returned = results(f(**batch.arguments()))
     _check_results(f, batch, returned, nonnegative, intermediates)

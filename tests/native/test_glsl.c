@@ -236,38 +236,40 @@ static void test_spirv(void) {
     CHECK_FAILS(hn_glsl_spirv(HN_FRAGMENT, HEAD "float f(); void main() { f(); }\n", &words, &n) == -1,
                 "No function definition (body) found");
     CHECK_FAILS(hn_glsl_spirv(HN_FRAGMENT, NULL, &words, &n) == -1, "hn_glsl_spirv: no text");
-    static void test_spirv_vulkan(void) {
-        enum { MAGIC = 0x07230203, VERSION_1_0 = 0x00010000 };
-        size_t n_words = 7;
-        uint32_t *words = NULL;
-        CHECK(hn_glsl_spirv_vulkan(HN_FRAGMENT,
-                                   "#version 450\n"
-                                   "uniform float plain;\n"
-                                   "layout(location = 0) out vec4 color;\n"
-                                   "void main() { color = vec4(plain); }\n",
-                                   &words, &n_words) == 0);
-        CHECK(words && n_words > 5 && words[0] == MAGIC && words[1] == VERSION_1_0);
-        hn_free(words);
-        CHECK(hn_glsl_spirv_vulkan(HN_VERTEX,
-                                   "#version 450\nvoid main() { gl_Position = vec4(gl_VertexIndex); }\n",
-                                   &words, &n_words) == 0);
-        CHECK(words && n_words > 5);
-        hn_free(words);
-        CHECK_FAILS(hn_glsl_spirv_vulkan(HN_VERTEX, "#version 450\nvoid main() { gl_Position = vec4(a); }\n",
-                                         &words, &n_words) == -1,
-                    "ERROR: 0:2: 'a'");
-        CHECK(n_words == 0);
-        CHECK_FAILS(hn_glsl_spirv_vulkan(HN_FRAGMENT, NULL, &words, &n_words) == -1,
-                    "hn_glsl_spirv_vulkan: no text");
-    }
+}
 
-    void test_glsl(void) {
-        test_version();
-        CHECK(strcmp(hn_error(), "") == 0);
-        test_check();
-        test_long_message();
-        test_preprocess();
-        test_tree();
-        test_spirv();
-        test_spirv_vulkan();
-    }
+static void test_spirv_vulkan(void) {
+    enum { MAGIC = 0x07230203, VERSION_1_0 = 0x00010000 };
+    size_t n_words = 7;
+    uint32_t *words = NULL;
+    CHECK(hn_glsl_spirv_vulkan(HN_FRAGMENT,
+                               "#version 450\n"
+                               "uniform float plain;\n"
+                               "layout(location = 0) out vec4 color;\n"
+                               "void main() { color = vec4(plain); }\n",
+                               &words, &n_words) == 0);
+    CHECK(words && n_words > 5 && words[0] == MAGIC && words[1] == VERSION_1_0);
+    hn_free(words);
+    CHECK(hn_glsl_spirv_vulkan(HN_VERTEX,
+                               "#version 450\nvoid main() { gl_Position = vec4(gl_VertexIndex); }\n", &words,
+                               &n_words) == 0);
+    CHECK(words && n_words > 5);
+    hn_free(words);
+    CHECK_FAILS(hn_glsl_spirv_vulkan(HN_VERTEX, "#version 450\nvoid main() { gl_Position = vec4(a); }\n",
+                                     &words, &n_words) == -1,
+                "ERROR: 0:2: 'a'");
+    CHECK(n_words == 0);
+    CHECK_FAILS(hn_glsl_spirv_vulkan(HN_FRAGMENT, NULL, &words, &n_words) == -1,
+                "hn_glsl_spirv_vulkan: no text");
+}
+
+void test_glsl(void) {
+    test_version();
+    CHECK(strcmp(hn_error(), "") == 0);
+    test_check();
+    test_long_message();
+    test_preprocess();
+    test_tree();
+    test_spirv();
+    test_spirv_vulkan();
+}
