@@ -92,7 +92,7 @@ class Stage:
 
     def read_targets(self) -> dict[str, np.ndarray]:
         """The render textures and 2D images by name: (h, w, 4) float32, row 0 at v = 0."""
-        found = {name: target.read_floats() for name, target in self._targets.items() if name is not None}
+        found = {name: target.read_texels() for name, target in self._targets.items() if name is not None}
         for prepared in self._passes:
             for bound in prepared.storage:
                 if isinstance(bound.object, Image) and len(bound.object.size) == 2:

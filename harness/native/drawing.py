@@ -363,6 +363,13 @@ class Target:
         _done(_library.hn_target_read_floats(self._handle, pixels.ctypes.data))
         return pixels
 
+    def read_texels(self) -> np.ndarray:
+        """(h, w, 4) float32, bottom row first: as a shader samples it."""
+        pixels = np.empty((self.height, self.width, 4), np.float32)
+        texture = _library.hn_target_texture(self._handle)
+        _done(_library.hn_texture_read(gl_enums.GL_TEXTURE_2D, texture, pixels.ctypes.data))
+        return pixels
+
     def __del__(self):
         if getattr(self, "_handle", None):
             _library.hn_target_delete(self._handle)

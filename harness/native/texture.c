@@ -37,12 +37,17 @@ typedef struct {
     GLint bound;
 } making;
 
-static making begin(GLenum target, const hn_sampling *sampling) {
-    making made = {.target = target};
+static GLint bound_to(GLenum target) {
+    GLint bound = 0;
     gl.GetIntegerv(target == GL_TEXTURE_2D   ? GL_TEXTURE_BINDING_2D
                    : target == GL_TEXTURE_3D ? GL_TEXTURE_BINDING_3D
                                              : GL_TEXTURE_BINDING_CUBE_MAP,
-                   &made.bound);
+                   &bound);
+    return bound;
+}
+
+static making begin(GLenum target, const hn_sampling *sampling) {
+    making made = {.target = target, .bound = bound_to(target)};
     gl.GenTextures(1, &made.texture);
     gl.BindTexture(target, made.texture);
     gl.TexParameteri(target, GL_TEXTURE_MIN_FILTER, (GLint)sampling->min_filter);
@@ -160,7 +165,9 @@ int hn_texture_read(uint32_t target, uint32_t texture, float *rgba) {
         return hn_fail("%s: nowhere to put the pixels", operation);
     gl.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
     gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+    GLint bound = bound_to(target);
     gl.BindTexture(target, texture);
     gl.GetTexImage(target, 0, GL_RGBA, GL_FLOAT, rgba);
+    gl.BindTexture(target, (GLuint)bound);
     return hn_check_gl("%s: texture %u", operation, texture);
 }

@@ -1,4 +1,4 @@
-"""Projects of the SHADERed conformance kit: the picture that SHADERed draws, or an error that says why there is none."""
+"""Projects of the SHADERed conformance kit: the picture that SHADERed draws, or an error that says why."""
 
 from __future__ import annotations
 
