@@ -71,6 +71,9 @@ def read(path: str | os.PathLike, traps: Traps | None = None) -> Project:
         _names_of_objects(passes),
         v1=v1,
     )
+    # With a render texture that cannot be, which was said, go the passes that draw to it.
+    made = {None, *(o.name for o in used if isinstance(o, RenderTexture))}
+    passes = [p for p in passes if isinstance(p, ComputePass) or made.issuperset(p.targets)]
     warn_of_binds(used, root)
     cameras = read_cameras(root.nested("cameras", "camera"))
     project = Project(

@@ -262,6 +262,14 @@ def test_keep_going_leaves_out_what_is_not_supported(tmp_path):
     assert len(traps.errors) == 3 and all(isinstance(e, ProjectError) and e.line for e in traps.errors)
 
 
+def test_keep_going_leaves_out_the_passes_of_a_render_texture_that_cannot_be(tmp_path):
+    passes = shader_pass("Bad", extra='<rendertexture name="rt" />') + shader_pass("Good")
+    objects = '<object type="rendertexture" name="rt" rsize="wide"><bind slot="0" name="Good" /></object>'
+    traps = Traps(keep_going=True)
+    project = sprj.read(write_project(tmp_path, passes, objects=objects), traps)
+    assert [p.name for p in project.passes] == ["Good"] and len(traps.errors) == 1
+
+
 def test_keep_going_does_not_make_a_project_of_what_is_none(tmp_path):
     path = tmp_path / "project.sprj"
     path.write_text("<project version='9' />")

@@ -105,7 +105,7 @@ def test_a_format_that_shadered_does_not_read(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["t.gif", "t.ppm", "t.bmp", "t.tga"])
-def test_other_formats(tmp_path, name):
+def test_formats_that_keep_every_byte(tmp_path, name):
     path = saved(tmp_path, Image.new("RGB", (1, 1), (255, 0, 51)), name)
     np.testing.assert_array_equal(textures.read(path), [[[255, 0, 51, 255]]])
 
