@@ -110,7 +110,7 @@ class Stage:
         for prepared in self._passes:
             if isinstance(prepared.shader_pass, ComputePass):
                 self._dispatch(prepared)
-            elif prepared.shader_pass.items or prepared.items:
+            else:
                 self._draw_pass(prepared, clears)
 
     def _bind(self, prepared: PreparedPass) -> None:

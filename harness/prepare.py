@@ -127,11 +127,13 @@ def _bind_textures(
     made: _Made,
     traps: Traps,
 ) -> tuple[BoundTexture, ...]:
-    """The pass's textures by slot, gaps closed: the k-th to unit k and to the k-th sampler declared."""
+    """The pass's textures by slot, gaps closed: the k-th to unit k and to its pixel shader's k-th declared sampler.
+
+    The samplers of compute shaders SHADERed leaves where their own ``layout(binding = ...)`` puts them.
+    """
     available = {**made.textures, **made.images}
     objects = [o for o in project.bound(shader_pass.name) if isinstance(o, RenderTexture) or o.name in available]
-    text = (sources.get(Stage.FRAGMENT) or sources[Stage.COMPUTE]).text
-    samplers = declared_samplers(text)
+    samplers = declared_samplers(sources[Stage.FRAGMENT].text) if Stage.FRAGMENT in sources else []
     bound = tuple(
         BoundTexture(unit, samplers[unit] if unit < len(samplers) else None, o, available.get(o.name))
         for unit, o in enumerate(objects)
@@ -142,6 +144,8 @@ def _bind_textures(
             program.set_uniform(texture.sampler, uniform.type, np.array([texture.unit], np.int32))
             _warn_of_kind(project, shader_pass, texture, uniform.type, traps)
     given = {texture.sampler for texture in bound}
+    if isinstance(shader_pass, ComputePass):
+        return bound
     for name, uniform in program.uniforms.items():
         if uniform.type in _SAMPLER_TARGETS and name not in given:
             traps.warn(

@@ -29,6 +29,8 @@ MOST_SLOTS = 1024
 #: bytes of a buffer
 LARGEST_BUFFER = 1 << 28
 FORMAT_LIMIT, NAME_LIMIT = 255, 511
+_KINDS_V1 = ("texture", "rendertexture", "audio")
+_KINDS = (*_KINDS_V1, "image", "image3d", "buffer", "pluginobject")
 #: what a row of a buffer can be of
 BUFFER_TYPES = ("bool", "byte", "int", "float", *(f"{t}{n}" for t in ("bvec", "bool", "byte") for n in (2, 3, 4))) + (
     *(f"{t}{n}" for t in ("ivec", "int", "vec", "float") for n in (2, 3, 4)),
@@ -57,6 +59,9 @@ def read_objects(elements: list[Element], passes: PassNames, needed: Collection[
     found: dict[str, Object] = {}
     for element in elements:
         name = _name(element)
+        if element.get("type") not in (_KINDS_V1 if v1 else _KINDS):
+            element.warn(f'there are no objects of type "{element.get("type")}", and SHADERed leaves "{name}" out')
+            continue
         try:
             if name in found:
                 _merge(element, name, found, passes, v1)
@@ -107,9 +112,9 @@ def _read(element: Element, name: str, binds: tuple[Bind, ...], v1: bool) -> Obj
         raise element.error(f'<object type="{kind}"> has no name: SHADERed crashes')
     if kind == "rendertexture":
         return _render_texture(element, common, v1)
-    if kind in ("image", "image3d") and not v1:
+    if kind in ("image", "image3d"):
         return _image(element, kind, common)
-    if kind == "buffer" and not v1:
+    if kind == "buffer":
         return _buffer(element, common)
     raise element.error(f'<object type="{kind}"> "{name}" is not supported')
 

@@ -19,11 +19,15 @@ def radians(degrees: float) -> np.float32:
 
 
 def _sin(angle: np.float32) -> np.float32:
-    return f32(math.sin(angle))
+    return f32(math.sin(angle)) if math.isfinite(angle) else f32(math.nan)
 
 
 def _cos(angle: np.float32) -> np.float32:
-    return f32(math.cos(angle))
+    return f32(math.cos(angle)) if math.isfinite(angle) else f32(math.nan)
+
+
+def _tan(angle: np.float32) -> np.float32:
+    return f32(math.tan(angle)) if math.isfinite(angle) else f32(math.nan)
 
 
 def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -95,7 +99,7 @@ def look_at(eye: np.ndarray, center: np.ndarray, up: np.ndarray) -> np.ndarray:
 def perspective(field_of_view: float, aspect: float, near: float, far: float) -> np.ndarray:
     """View to clip space, depth -1...1. ``field_of_view`` is the vertical one, ``aspect`` width by height."""
     near, far = f32(near), f32(far)
-    half = f32(math.tan(f32(field_of_view) / f32(2)))
+    half = _tan(f32(field_of_view) / f32(2))
     m = np.zeros((4, 4), f32)
     m[0, 0] = f32(1) / (f32(aspect) * half)
     m[1, 1] = f32(1) / half

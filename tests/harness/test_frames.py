@@ -14,9 +14,11 @@ from sprj_files import (
     item,
     line_of,
     shader_pass,
+    texture,
     variables,
     write_project,
     write_quad,
+    write_texture,
 )
 
 from harness import ProjectError
@@ -202,6 +204,12 @@ def test_without_clear_a_render_texture_keeps_its_last_frame(tmp_path):
         renderer.draw(frame)
         seen.append(renderer.targets()["rt"][0, 0, 0])
     assert seen == [1, 2, 3]
+
+
+def test_a_pass_of_render_states_alone_clears(tmp_path):
+    write_quad(tmp_path, "")
+    path = write_project(tmp_path, shader_pass(items=state("S", "")), settings='<entry type="clearcolor" r="2" />')
+    assert first_floats(path)[0] == 2
 
 
 def test_the_window_is_cleared_once(tmp_path):
@@ -541,3 +549,14 @@ def test_a_storage_buffer_of_a_shader_pass(tmp_path):
         shader.write_text(shader.read_text().replace("#version 330", "#version 430"))
     write_buffer(tmp_path, "b", 1, 2, 3, 4)
     np.testing.assert_array_equal(floats(path)[0, :, 0], (1, 2, 3, 4))
+
+
+def test_a_sampler_of_a_compute_pass_reads_its_own_binding(tmp_path):
+    path = compute_project(tmp_path)
+    fill = FILL.replace("uniform float factor;", "uniform float factor;\nlayout(binding = 1) uniform sampler2D second;")
+    (tmp_path / "fill.comp").write_text(fill.replace("factor * counts[at.x]", "texture(second, vec2(0.5)).g"))
+    write_texture(tmp_path, "a.png", (255, 0, 0))
+    write_texture(tmp_path, "b.png", (0, 51, 0))
+    objects = texture("a.png", 0, "Fill") + texture("b.png", 1, "Fill") + "</objects>"
+    path.write_text(path.read_text().replace("</objects>", objects))
+    assert first_floats(path)[0] == pytest.approx(0.2)

@@ -187,11 +187,16 @@ def test_a_type_in_a_buffer_that_there_is_not(tmp_path):
     assert '"vec5", of which SHADERed makes float' in warning.message
 
 
-@pytest.mark.parametrize("kind", ["audio", "pluginobject", "video"])
+@pytest.mark.parametrize("kind", ["audio", "pluginobject"])
 def test_other_objects_are_not_supported(tmp_path, kind):
     path = project_with(tmp_path, one(kind, 'name="o" path="o"'))
     error = refusal(path)
     assert error.message == f'<object type="{kind}"> "o" is not supported' and error.line == line_of(path, "<object ")
+
+
+def test_objects_of_no_type_are_left_out(tmp_path):
+    project, warning = warned(project_with(tmp_path, one("video", 'name="o"')))
+    assert project.objects == () and 'no objects of type "video"' in warning.message
 
 
 # ---- Binds -----------------------------------------------------------------------------------------------------------
