@@ -56,7 +56,7 @@ def _header(data: bytes) -> tuple[int, int, int]:
 
 
 def _decode(data: bytes, start: int, width: int, height: int) -> np.ndarray:
-    runs = _SHORTEST_RUNS <= width <= _LONGEST_RUNS and data[start : start + 2] == b"\2\2" and data[start + 2] < 128
+    runs = _SHORTEST_RUNS <= width <= _LONGEST_RUNS and re.compile(rb"\x02\x02[\x00-\x7f]").match(data, start)
     if not runs:
         flat = data[start : start + 4 * width * height]
         if len(flat) < 4 * width * height:

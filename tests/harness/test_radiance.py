@@ -50,6 +50,7 @@ def test_runs_and_flat_rows_are_alike():
         HEAD,
         HEAD + b"+Y 1 +X 1\n\0\0\0\0",
         picture(2, 2, b"\0" * 15),
+        picture(9, 1, bytes((2, 2))),
         picture(9, 1, bytes((2, 2, 0, 9, 128 + 10, 1))),
         picture(9, 1, bytes((2, 2, 0, 9, 0, 1))),
         picture(9, 1, bytes((2, 2, 0, 9, 9, 1, 2, 3))),
