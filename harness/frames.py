@@ -125,8 +125,7 @@ class Stage:
     def _dispatch(self, prepared: PreparedPass) -> None:
         self._bind(prepared)
         prepared.uniforms.bind(None, self._system, self._memory)
-        if 0 not in prepared.shader_pass.groups:
-            native.dispatch(prepared.program, prepared.shader_pass.groups)
+        native.dispatch(prepared.program, prepared.shader_pass.groups)
 
     def _draw_pass(self, prepared: PreparedPass, clears: _Clears) -> None:
         shader_pass = prepared.shader_pass

@@ -138,6 +138,19 @@ def test_several_targets(tmp_path):
     assert (renderer.floats()[..., 0] == 0.5).all()
 
 
+def test_targets_of_different_sizes_share_the_size_of_the_last(tmp_path):
+    outputs = "uniform vec2 size; layout(location = 0) out vec4 a; layout(location = 1) out vec4 b;"
+    write_quad(tmp_path, "")
+    name = fragment(tmp_path, "both.frag", "a = b = vec4(size, gl_FragCoord.x, 1.0);", outputs)
+    objects = "".join(
+        target(name, f'fsize="{size}" format="R32G32B32A32_FLOAT"') for name, size in (("x", "5,7"), ("y", "2,3"))
+    )
+    size = variables('<variable type="float2" name="size" system="ViewportSize" />')
+    path = write_project(tmp_path, quad_pass("P", "x", "y", fragment=name, extra=size), objects=objects)
+    found = renderer_of(path).targets()["y"]
+    np.testing.assert_array_equal(found, np.broadcast_to([[(2, 3, x + 0.5, 1) for x in range(2)]], (3, 2, 4)))
+
+
 # ---- Clears ----------------------------------------------------------------------------------------------------
 
 
@@ -226,6 +239,17 @@ def test_depth_is_kept_within_the_window_and_cleared_between_targets(tmp_path):
     assert renderer.floats()[0, 0, 0] == 0.25 and renderer.targets()["rt"][0, 0, 0] == 1
 
 
+def test_the_depth_of_several_targets_is_the_last_ones(tmp_path):
+    """B draws behind what A drew, into the depth that A's last target lent: nothing of B is seen."""
+    path = leveled(tmp_path, "")
+    outputs = "layout(location = 0) out vec4 a; layout(location = 1) out vec4 b;"
+    both = fragment(tmp_path, "both.frag", "a = b = vec4(0.5);", outputs)
+    objects = target("x") + target("y", 'rsize="1,1" format="R32_FLOAT"')
+    passes = quad_pass("A", "x", "y", fragment=both) + quad_pass("B", "y", extra=level(1))
+    path = write_project(tmp_path, passes, objects=objects)
+    assert renderer_of(path).targets()["y"][0, 0, 0] == 0.5
+
+
 def test_a_pass_that_leaves_the_depth_locked_locks_the_next_clear(tmp_path):
     """The next target's depth is what it was at first, 0: nothing is in front of it."""
     locked = item("AQ", QUAD) + state("AS", "<depthmask>false</depthmask>")
@@ -308,6 +332,84 @@ def test_the_stencil_of_an_item_holds_for_the_next(tmp_path, function, seen):
     own = '<itemvalues><value variable="level" for="Over"><row><value>1</value></row></value></itemvalues>'
     path = leveled(tmp_path, shader_pass(items=items, extra=level(0.5) + own))
     assert first_floats(path)[0] == (1 if seen else 0.5)
+
+
+def stencil_after(folder, *tags: str) -> float:
+    """What quads drawn one after the other, each in a state with a stencil, leave in it.
+
+    It is read bit by bit: a quad per bit adds 2^k where the reference, 1, and the stencil differ in bit k, or agree.
+    """
+    items, values = "", ""
+    for n, of_state in enumerate(tags):
+        test = ("" if "<depthtest>" in of_state else NO_DEPTH) + "<stenciltest>true</stenciltest>"
+        test += "" if "<stencilmask>" in of_state else "<stencilmask>255</stencilmask>"
+        items += state(f"S{n}", test + of_state) + item(f"Q{n}", QUAD)
+    adds = f"{NO_DEPTH}<blend>true</blend><colorsrcfactor>One</colorsrcfactor><colordstfactor>One</colordstfactor>"
+    for k in range(8):
+        function = "Equal" if k == 0 else "NotEqual"
+        reads = "".join(f"<stencil{side}func>{function}</stencil{side}func>" for side in ("front", "back"))
+        keeps = f"<stenciltest>true</stenciltest><stencilref>{1 << k}</stencilref>{reads}"
+        items += state(f"Read{k}", adds + keeps) + item(f"Bit{k}", QUAD)
+        row = f"<value>{1 << k}</value>" * 4
+        values += f'<value variable="level" for="Bit{k}"><row>{row}</row></value>'
+    extra = level(0) + f"<itemvalues>{values}</itemvalues>"
+    settings = '<entry type="clearcolor" r="0" g="0" b="0" a="0" />'
+    return first_floats(leveled(folder, shader_pass(items=items, extra=extra), settings=settings))[0]
+
+
+def side(name: str, function: str, *, passed: str = "Keep", fail: str = "Keep", depth: str = "Keep") -> str:
+    return (
+        f"<stencil{name}func>{function}</stencil{name}func><stencil{name}pass>{passed}</stencil{name}pass>"
+        f"<stencil{name}fail>{fail}</stencil{name}fail><depth{name}fail>{depth}</depth{name}fail>"
+    )
+
+
+@pytest.mark.parametrize(
+    "operations, expected",
+    [
+        (["Keep"], 0),
+        (["Replace"], 1),
+        (["Invert"], 255),
+        (["Invert", "Zero"], 0),
+        (["Increase", "Increase"], 2),
+        (["Decrease"], 0),
+        (["Invert", "Increase"], 255),
+        (["Decrease Saturated"], 255),  # in SHADERed it is this one that wraps
+        (["Invert", "Increase Saturated"], 0),
+    ],
+)
+def test_stencil_operations(tmp_path, operations, expected):
+    assert stencil_after(tmp_path, *(side("front", "Always", passed=o) for o in operations)) == expected
+
+
+NEVER_DEPTH = "<depthtest>true</depthtest><depthfunc>Never</depthfunc>"
+
+
+@pytest.mark.parametrize(
+    "tags, expected",
+    [
+        (side("front", "Never", fail="Replace", passed="Invert", depth="Invert"), 1),
+        (NEVER_DEPTH + side("front", "Always", depth="Replace", passed="Invert", fail="Invert"), 1),
+        (side("front", "Always", passed="Replace") + side("back", "Always", passed="Invert"), 1),
+        (
+            "<cull>false</cull><ccw>false</ccw>"
+            + side("front", "Always", passed="Replace")
+            + side("back", "Always", passed="Invert"),
+            255,
+        ),
+        ("<stencilmask>6</stencilmask>" + side("front", "Always", passed="Invert"), 6),
+    ],
+)
+def test_what_a_stencil_operation_is_for(tmp_path, tags, expected):
+    assert stencil_after(tmp_path, tags) == expected
+
+
+@pytest.mark.parametrize("tags, seen", [("", True), ("<depthclamp>false</depthclamp>", False)])
+def test_what_lies_before_the_near_plane_is_cut_or_clamped(tmp_path, tags, seen):
+    path = leveled(tmp_path, shader_pass(items=state("S", NO_DEPTH + tags) + item("Q", QUAD), extra=level(1)))
+    vert = tmp_path / "quad.vert"
+    vert.write_text(vert.read_text().replace("vec4(position, 0.0, 1.0)", "vec4(position, -1.5, 1.0)"))
+    assert (first_floats(path)[0] == 1) == seen
 
 
 def test_wireframe(tmp_path):

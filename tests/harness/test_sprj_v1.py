@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from sprj_files import item, read, refusal, row
 
+from harness import sprj
 from harness.project import ArcballCamera, Blend, RenderState, Stencil, StencilSide
 
 CUBE = item("Box")
@@ -35,6 +36,13 @@ def test_shaders_and_what_version_1_does_not_know(tmp_path):
     (p,) = read(version_1(tmp_path)).passes
     assert (p.name, p.vertex.path, p.fragment.path) == ("Simple", "shaders/a.vert", "b.frag")
     assert (p.layout, p.macros, p.targets) == (("Position", "Normal", "Texcoord"), (), (None,))
+
+
+def test_version_1_knows_no_tessellation(tmp_path):
+    later = "".join(f'<shader type="{t}" used="true"><path>{t}.glsl</path></shader>' for t in ("gs", "tcs", "tes"))
+    path = version_1(tmp_path, targets=later)
+    (p,) = sprj.read(path).passes
+    assert p.geometry.path == "gs.glsl" and p.tess_control is p.tess_evaluation is None
 
 
 def test_variables_are_under_their_shaders(tmp_path):
