@@ -39,7 +39,10 @@ def test_shaders_and_what_version_1_does_not_know(tmp_path):
 
 
 def test_version_1_knows_no_tessellation(tmp_path):
-    later = "".join(f'<shader type="{t}" used="true"><path>{t}.glsl</path></shader>' for t in ("gs", "tcs", "tes"))
+    later = "".join(
+        f'<shader type="{t}" used="true"><path>{t}.glsl</path><entry>main</entry></shader>'
+        for t in ("gs", "tcs", "tes")
+    )
     path = version_1(tmp_path, targets=later)
     (p,) = sprj.read(path).passes
     assert p.geometry.path == "gs.glsl" and p.tess_control is p.tess_evaluation is None
