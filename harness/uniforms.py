@@ -152,8 +152,7 @@ class PassUniforms:
                 source = memory.find(variable.arguments[0])
                 if source is not None:
                     # SHADERed copies as much as the pointer holds, from what may hold less.
-                    words = source.words[: len(value.words)].copy()
-                    value.words[:] = 0
+                    words = source.words[: len(value.words)]
                     value.words[: len(words)] = words
             case "CameraSnapshot":
                 identity = np.eye(4).reshape(-1)

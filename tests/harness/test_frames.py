@@ -499,6 +499,21 @@ def test_a_buffer_that_there_is_not(tmp_path, tag):
         render(path, SIZE)
 
 
+def test_all_parts_of_a_model_are_drawn(tmp_path):
+    """Two triangles, each in an object of its own: one covers the left half, one the right."""
+    corners = [(-3, -1), (0, -1), (0, 5), (0, -1), (3, -1), (0, 5)]
+    lines = [f"v {x} {y} 0" for x, y in corners]
+    (tmp_path / "two.obj").write_text("\n".join([*lines[:3], "o a", "f 1 2 3", *lines[3:], "o b", "f 4 5 6"]) + "\n")
+    path = leveled(
+        tmp_path,
+        shader_pass(
+            items=item("M", "<filepath>two.obj</filepath>", kind="model"),
+            extra=level(1) + '<inputlayout><item value="Position" semantic="POSITION" /></inputlayout>',
+        ),
+    )
+    assert (floats(path)[0, :, 0] == 1).all()
+
+
 def test_a_vertex_buffer(tmp_path):
     vert = """#version 330
 layout(location = 0) in vec2 place;
@@ -661,4 +676,5 @@ def test_a_sampler_of_a_compute_pass_reads_its_own_binding(tmp_path):
     write_texture(tmp_path, "b.png", (0, 51, 0))
     objects = texture("a.png", 0, "Fill") + texture("b.png", 1, "Fill") + "</objects>"
     path.write_text(path.read_text().replace("</objects>", objects))
-    assert first_floats(path)[0] == pytest.approx(0.2)
+    pixels, warnings = drawn(path)
+    assert pixels[0, 0, 0] == pytest.approx(0.2) and warnings == []

@@ -37,6 +37,24 @@ def test_v_0_is_the_bottom_row_unless_flipped(tmp_path, vflip, at_the_bottom):
     assert (render(path, SIZE)[..., 0] == at_the_bottom).all()
 
 
+@pytest.mark.parametrize("wrap, expected", [("s", (0, 30)), ("t", (30, 0))])
+def test_wraps_are_of_their_direction(tmp_path, wrap, expected):
+    """Red counts columns and green rows from the bottom, by 10; (1.125, 1.125) is the first or the last of them."""
+    counts = np.zeros((4, 4, 3), np.uint8)
+    counts[..., 0], counts[..., 1] = 10 * np.arange(4), 10 * np.arange(4)[::-1, None]
+    Image.fromarray(counts).save(tmp_path / "t.png")
+    other = "t" if wrap == "s" else "s"
+    path = write_quad(
+        tmp_path,
+        "color = texture(t, vec2(1.125));",
+        "uniform sampler2D t;",
+        objects=texture(
+            "t.png", more=f'min_filter="Nearest" mag_filter="Nearest" wrap_{wrap}="Repeat" wrap_{other}="ClampToEdge"'
+        ),
+    )
+    assert (render(path, SIZE)[0, 0, :2] == expected).all()
+
+
 def test_a_missing_texture(tmp_path):
     path = write_quad(
         tmp_path, "color = texture(t, uv);", "uniform sampler2D t;", objects="\n" + texture("maps/gone.png")
@@ -92,6 +110,16 @@ def test_faces_are_not_turned_over(tmp_path):
     # Of the face +z t runs down, against y (OpenGL 4.5, table 8.19): the upper half is the top row.
     path = write_quad(tmp_path, "color = texture(sky, vec3(0.9, 0.9, 1));", "uniform samplerCube sky;", objects=objects)
     assert (render(path, SIZE)[..., 0] == 1).all()
+
+
+def test_a_face_is_clamped_at_its_edge(tmp_path):
+    objects = cube(tmp_path, **dict.fromkeys(FACES, (2, 2)))
+    face = np.zeros((2, 2, 3), np.uint8)
+    face[:, 0] = 200
+    Image.fromarray(face).save(tmp_path / "right.png")
+    body = "color = texture(t, vec3(1.0, 0.0, 0.999));"  # near the first column's outer edge
+    path = write_quad(tmp_path, body, "uniform samplerCube t;", objects=objects)
+    assert (render(path, SIZE)[..., 0] == 200).all()
 
 
 @pytest.mark.parametrize("sizes", [{"top": (2, 2)}, dict.fromkeys(FACES, (2, 1))])

@@ -15,9 +15,11 @@ from sprj_files import (
     line_of,
     row,
     shader_pass,
+    texture,
     variables,
     write_project,
     write_quad,
+    write_texture,
 )
 
 from harness import ProjectError
@@ -227,6 +229,33 @@ def test_a_pointer_to_a_smaller_variable(tmp_path):
     extra = variables(constant("s", "float2", 1, 2), function("v", "float3", "s", function_of="Pointer"))
     path = write_quad(tmp_path, "color = vec4(v, 1.0);", "uniform vec3 v;", extra=extra)
     np.testing.assert_array_equal(first_floats(path)[:3], (1, 2, 0))
+
+
+def test_a_pointer_reads_the_first_variable_of_that_name(tmp_path):
+    write_quad(tmp_path, "color = vec4(v, p, 0.0, 1.0);", "uniform float v, p;")
+    pointer = function("p", "float", "v", function_of="Pointer")
+    first = shader_pass("First", extra=variables(constant("v", "float", 3)))
+    off = item("S", "<depthtest>false</depthtest>", kind="renderstate") + item("Q", "<type>ScreenQuadNDC</type>")
+    path = write_project(
+        tmp_path, first + shader_pass("Second", items=off, extra=variables(constant("v", "float", 4), pointer))
+    )
+    np.testing.assert_array_equal(first_floats(path)[:2], (4, 3))
+
+
+def test_63_characters_of_a_name_count(tmp_path):
+    name = "n" * 64
+    extra = variables(constant(name[:63], "float", 1))
+    path = write_quad(tmp_path, f"color = vec4({name});", f"uniform float {name};", extra=extra)
+    assert first_floats(path)[0] == 1
+
+
+def test_a_variable_does_not_set_a_sampler(tmp_path):
+    write_texture(tmp_path, "t.png", (51, 0, 0))
+    extra = variables(constant("t", "int", 3))
+    path = write_quad(
+        tmp_path, "color = texture(t, uv);", "uniform sampler2D t;", extra=extra, objects=texture("t.png")
+    )
+    assert first_floats(path)[0] == pytest.approx(0.2)
 
 
 def test_a_camera_snapshot(tmp_path):

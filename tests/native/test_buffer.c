@@ -1,14 +1,15 @@
 /* test_buffer.c: buffers, and compute programs that fill buffers and images. */
 #include "check.h"
 
-static const char doubles[] = "#version 430\nlayout(local_size_x = 1) in;\n"
-                              "layout(std430, binding = 1) buffer Numbers { float numbers[]; };\n"
-                              "layout(rgba32f, binding = 0) uniform image2D picture;\n"
-                              "void main() {\n"
-                              "    uint i = gl_GlobalInvocationID.x;\n"
-                              "    numbers[i] *= 2.0;\n"
-                              "    imageStore(picture, ivec2(i, 0), vec4(numbers[i]));\n"
-                              "}\n";
+static const char doubles[] =
+    "#version 430\nlayout(local_size_x = 1) in;\n"
+    "layout(std430, binding = 1) buffer Numbers { float numbers[]; };\n"
+    "layout(rgba32f, binding = 0) uniform image2D picture;\n"
+    "void main() {\n"
+    "    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y + gl_GlobalInvocationID.z;\n"
+    "    numbers[i] *= 2.0;\n"
+    "    imageStore(picture, ivec2(i, 0), vec4(numbers[i]));\n"
+    "}\n";
 
 static void test_dispatch(void) {
     const char *const texts[HN_STAGES] = {[HN_COMPUTE] = doubles};
@@ -23,6 +24,9 @@ static void test_dispatch(void) {
     CHECK(hn_buffer_read(buffer, sizeof read, read) == 0 && read[0] == 2 && read[1] == 4 && read[2] == 6);
     CHECK(hn_texture_read(GL_TEXTURE_2D, picture, texels) == 0 && texels[0] == 2 && texels[4] == 4 &&
           texels[8] == 6);
+    CHECK(hn_dispatch(program, 1, 2, 1) == 0 && hn_dispatch(program, 1, 1, 3) == 0);
+    CHECK(hn_buffer_read(buffer, sizeof read, read) == 0 && read[0] == 8 && read[1] == 16 && read[2] == 12);
+    CHECK(hn_dispatch(program, 0, 1, 1) == 0);
     CHECK(hn_buffer_bind(1, 0) == 0);
     CHECK_FAILS(hn_dispatch(9999, 1, 1, 1) == -1, "program 9999: GL_INVALID_VALUE");
     CHECK_FAILS(hn_dispatch(program, 100000, 1, 1) == -1, "GL_INVALID_VALUE");

@@ -104,6 +104,13 @@ static void test_state(void) {
     CHECK(draw_fields(target, program, before, fields, 1, &clamped) == 0 &&
           hn_target_read_floats(target, rgba) == 0);
     CHECK(memcmp(rgba, red, sizeof rgba) == 0);
+    /* What writes no depth hides nothing. */
+    hn_state unseen = start;
+    unseen.depth_write = 0;
+    CHECK(clear(target, black) == 0 && draw_fields(target, program, near, fields, 1, &unseen) == 0);
+    hn_program_uniform(program, value.location, GL_FLOAT_VEC4, 1, green);
+    CHECK(draw_fields(target, program, far, fields, 1, NULL) == 0);
+    CHECK(hn_target_read_floats(target, rgba) == 0 && memcmp(rgba, green, sizeof rgba) == 0);
     hn_mesh_delete(beyond);
     hn_mesh_delete(before);
 
@@ -111,6 +118,41 @@ static void test_state(void) {
     hn_mesh_delete(far);
     hn_mesh_delete(back);
     hn_target_delete(target);
+    hn_program_delete(program);
+}
+
+static uint32_t colored(int32_t *location) {
+    uint32_t program = hn_program_create(
+        POSITION_VERTEX,
+        "#version 330\nuniform vec4 value;\nout vec4 color;\nvoid main() { color = value; }\n");
+    hn_variable value = {.location = -1};
+    hn_program_uniforms(program, &value, 1);
+    *location = value.location;
+    return program;
+}
+
+/* An evaluation after a draw of lines that no stencil lets pass is as any other. */
+static void test_state_does_not_stay(void) {
+    int32_t location = -1;
+    uint32_t program = colored(&location);
+    uint32_t fives = hn_program_create(hn_evaluate_vertex(),
+                                       "#version 330\nout vec4 five;\nvoid main() { five = vec4(5.0); }\n");
+    const hn_field fields[] = {HN_POSITION};
+    hn_target *target = hn_target_create(1, 1, GL_RGBA32F);
+    hn_mesh *mesh = cover(0);
+    hn_state never = start;
+    never.fill = GL_LINE;
+    never.stencil_test = 1;
+    never.stencil_front = never.stencil_back = (hn_stencil){GL_NEVER, GL_KEEP, GL_KEEP, GL_KEEP};
+    float numbers[100] = {0};
+    const hn_output output = {numbers, 1};
+    CHECK(draw_fields(target, program, mesh, fields, 1, &never) == 0);
+    CHECK(hn_evaluate(fives, NULL, 0, &output, 1, 100) == 0);
+    for (int i = 0; i < 100; ++i)
+        CHECK(numbers[i] == 5);
+    hn_mesh_delete(mesh);
+    hn_target_delete(target);
+    hn_program_delete(fives);
     hn_program_delete(program);
 }
 
@@ -161,16 +203,6 @@ static void test_fields(void) {
 }
 
 /* A program of one colour, and the uniform that sets it. */
-static uint32_t colored(int32_t *location) {
-    uint32_t program = hn_program_create(
-        POSITION_VERTEX,
-        "#version 330\nuniform vec4 value;\nout vec4 color;\nvoid main() { color = value; }\n");
-    hn_variable value = {.location = -1};
-    hn_program_uniforms(program, &value, 1);
-    *location = value.location;
-    return program;
-}
-
 /* Draws a colour over another and reads what comes of it. */
 static int blend(const float under[4], const float over[4], const hn_state *state, float rgba[4]) {
     int32_t location = -1;
@@ -201,12 +233,12 @@ static void test_blend(void) {
     memcpy(state.blend_factors, by_alpha, sizeof by_alpha);
     /* 1/4 of the one and 3/4 of the other; the greater alpha. */
     CHECK(blend(under, over, &state, rgba) == 0 && is(rgba, 0.875f, 0.4375f, 0.25f, 0.5f));
-    const uint32_t constant[4] = {GL_CONSTANT_COLOR, GL_ONE, GL_ONE, GL_ONE};
+    const uint32_t constant[4] = {GL_CONSTANT_COLOR, GL_ONE, GL_ONE, GL_ZERO};
     memcpy(state.blend_factors, constant, sizeof constant);
     const float half[4] = {0.5f, 2, 0, 1};
     memcpy(state.blend_color, half, sizeof half);
     state.blend_functions[0] = state.blend_functions[1] = GL_FUNC_REVERSE_SUBTRACT;
-    CHECK(blend(under, over, &state, rgba) == 0 && is(rgba, 0.75f, 0, 0, 0.25f));
+    CHECK(blend(under, over, &state, rgba) == 0 && is(rgba, 0.75f, 0.0f, 0, -0.25f));
     state.blend = 0; /* and nothing of it is left */
     CHECK(blend(under, over, &state, rgba) == 0 && is(rgba, 0.5f, 0.25f, 1, 0.25f));
     CHECK(blend(under, over, NULL, rgba) == 0 && is(rgba, 0.5f, 0.25f, 1, 0.25f));
@@ -241,6 +273,30 @@ static void test_stencil(void) {
         hn_program_uniform(program, location, GL_FLOAT_VEC4, 1, green);
         CHECK(draw_fields(target, program, mesh, fields, 1, &reads) == 0);
         CHECK(hn_target_read_floats(target, rgba) == 0 && is(rgba, i == 0, i > 0, 0, 1));
+    }
+    /* Of back faces the other side counts. */
+    reads.cull = GL_NONE;
+    reads.front = GL_CW;
+    hn_program_uniform(program, location, GL_FLOAT_VEC4, 1, red);
+    CHECK(draw_fields(target, program, mesh, fields, 1, &reads) == 0);
+    CHECK(hn_target_read_floats(target, rgba) == 0 && is(rgba, 0, 1, 0, 1));
+    /* What the stencil refuses and what the depth refuses have operations of their own. */
+    reads = start;
+    reads.depth_test = 0;
+    reads.stencil_test = 1;
+    reads.stencil_read_mask = 0xFF;
+    reads.stencil_front = reads.stencil_back = (hn_stencil){GL_EQUAL, GL_KEEP, GL_KEEP, GL_KEEP};
+    writes.depth_test = 1;
+    writes.depth_function = GL_NEVER;
+    for (int reference = 1; reference <= 2; ++reference) {
+        writes.stencil_front =
+            (hn_stencil){reference == 1 ? GL_NEVER : GL_ALWAYS, GL_REPLACE, GL_INVERT, GL_ZERO};
+        reads.stencil_reference = reference == 1 ? 1 : 0xFF;
+        CHECK(clear(target, black) == 0);
+        CHECK(draw_fields(target, program, mesh, fields, 1, &writes) == 0);
+        CHECK(hn_target_read_floats(target, rgba) == 0 && is(rgba, 0, 0, 0, 0));
+        CHECK(draw_fields(target, program, mesh, fields, 1, &reads) == 0);
+        CHECK(hn_target_read_floats(target, rgba) == 0 && is(rgba, 1, 0, 0, 1));
     }
     hn_mesh_delete(mesh);
     hn_target_delete(target);
@@ -372,6 +428,7 @@ static void test_stages(void) {
 }
 
 void test_draw(void) {
+    test_state_does_not_stay();
     test_places();
     test_state();
     test_fields();
