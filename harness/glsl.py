@@ -155,8 +155,9 @@ def load(
         (f"#define {name} {text}".rstrip(), ("macros", n), None)
         for n, (name, text) in enumerate((defines or {}).items(), 1)
     ]
-    if lines and lines[0][0].lstrip().startswith("#version"):
-        lines[1:1] = macros
+    first = next((n for n, (text, _, _) in enumerate(lines) if text.strip()), 0)  # blank lines may stand above it
+    if lines and lines[first][0].lstrip().startswith("#version"):
+        lines[first + 1 : first + 1] = macros
     elif version is None:
         raise GlslError("a shader must begin with its #version, and nothing may stand above it", shown_path(path), 1)
     else:
@@ -179,31 +180,45 @@ def check(stage: Stage, source: Source, *, spirv: bool = False) -> None:
 
 def link(vertex: Source, fragment: Source) -> native.Program:
     """The program of two stages, refused by glslang first and by the driver second. GlslError names file and line."""
-    check(Stage.VERTEX, vertex, spirv=True)
-    check(Stage.FRAGMENT, fragment, spirv=True)
-    _check_varyings(vertex, fragment)
+    return link_stages({Stage.VERTEX: vertex, Stage.FRAGMENT: fragment})
+
+
+def link_stages(stages: Mapping[Stage, Source]) -> native.Program:
+    """The program of these stages, to draw with or to dispatch, refused as by ``link``."""
+    for stage, source in stages.items():
+        check(stage, source, spirv=True)
+    drawn = [stage for stage in _UPSTREAM if stage in stages]
+    if Stage.FRAGMENT in stages:
+        _check_varyings(drawn[-1], stages[drawn[-1]], stages[Stage.FRAGMENT])
     try:
-        return native.Program(vertex.text, fragment.text)
+        return native.Program.of_stages({stage: source.text for stage, source in stages.items()})
     except NativeError as error:
-        stage, _, log = str(error).partition(": ")
-        if stage == "vertex":
-            raise vertex.error(log) from None
-        if stage == "fragment":
-            raise fragment.error(log) from None
-        raise GlslError(f"does not link with {vertex.path}: {log.strip()}", fragment.path) from None
+        name, _, log = str(error).partition(": ")
+        for stage, source in stages.items():
+            if name == stage.name.lower():
+                raise source.error(log) from None
+        last = stages.get(Stage.FRAGMENT) or next(iter(stages.values()))
+        others = " and ".join(source.path for source in stages.values() if source is not last)
+        with_others = f" with {others}" if others else ""
+        raise GlslError(f"does not link{with_others}: {log.strip()}", last.path) from None
+
+
+#: stages before the fragment stage, in order
+_UPSTREAM = (Stage.VERTEX, Stage.TESS_CONTROL, Stage.TESS_EVALUATION, Stage.GEOMETRY)
 
 
 # In glslang's syntax tree: what a stage reads or declares, with the line where.
 _VARYING = re.compile(r"^0:(\S+) +'(\w+)' \( (?:\w+ )*?(in|out) ", re.MULTILINE)
+_WRITTEN = re.compile(r"^0:\S+ +'(\w+)' \((?:layout\([^)]*\))? (?:\w+ )*?out ", re.MULTILINE)
 _INTERPOLATED = re.compile(r"'\w+' \( (?:smooth|flat|noperspective|centroid|sample) ")
 
 
-def _check_varyings(vertex: Source, fragment: Source) -> None:
-    """Refuses a fragment input that the vertex shader lacks: Mesa links it where it is read, and draws any colour."""
-    written = {m[2] for m in _VARYING.finditer(native.glsl_tree(Stage.VERTEX, vertex.text)) if m[3] == "out"}
+def _check_varyings(stage: Stage, before: Source, fragment: Source) -> None:
+    """Refuses a fragment input that the stage before lacks: Mesa links it where it is read, and draws any colour."""
+    written = {m[1] for m in _WRITTEN.finditer(native.glsl_tree(stage, before.text))}
     body, _, _ = native.glsl_tree(Stage.FRAGMENT, fragment.text).partition("Linker Objects")
     for line in body.splitlines():
         match = _VARYING.match(line)
         if match and match[3] == "in" and _INTERPOLATED.search(line) and match[2] not in written:
             where = fragment.origin(int(match[1])) if match[1].isdigit() else (fragment.path, None)
-            raise GlslError(f'reads "{match[2]}", which {vertex.path} does not write', *where)
+            raise GlslError(f'reads "{match[2]}", which {before.path} does not write', *where)

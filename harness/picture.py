@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import BinaryIO
+from urllib.parse import quote
 
 import numpy as np
 from PIL import Image
@@ -23,6 +24,21 @@ def write_png(path: str | os.PathLike, pixels: np.ndarray) -> None:
     The file appears complete or does not change.
     """
     write(path, lambda file: Image.fromarray(pixels).save(file, format="PNG", compress_level=COMPRESSION))
+
+
+def write_targets(folder: str | os.PathLike, targets: Mapping[str, np.ndarray]) -> None:
+    """Writes render textures, (h, w, 4) float32 with the bottom row first: NAME.npy as they are, and NAME.png clamped
+    to 0...1 with the top row first. Characters that no file name has are written as %XX."""
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise HarnessError(f"cannot make the folder: {error.strerror}", folder) from error
+    for name, floats in targets.items():
+        file_name = quote(name, safe=" ()+,;=@[]!")
+        write(folder / f"{file_name}.npy", lambda file, floats=floats: np.save(file, floats))
+        clamped = np.clip(np.nan_to_num(floats[::-1], nan=0.0), 0, 1)
+        write_png(folder / f"{file_name}.png", np.floor(clamped * 255 + 0.5).astype(np.uint8))
 
 
 def write(path: str | os.PathLike, save: Callable[[BinaryIO], None]) -> None:

@@ -1,4 +1,4 @@
-"""Gets the passes of a project ready to draw: programs, meshes, textures in their units, uniforms.
+"""Gets the passes of a project ready to draw: programs, items, objects in their units, uniforms.
 
 What a pass came to is open to tests and reports: its program's active uniforms and attributes, its shaders'
 final texts, and which texture went to which sampler.
@@ -6,242 +6,192 @@ final texts, and which texture went to which sampler.
 
 from __future__ import annotations
 
-import os
-import re
-from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
-from . import glsl, native, shapes, textures
-from .errors import GlslError, NativeError, ProjectError
-from .native import Field, gl_enums
-from .project import Geometry, Item, Model, Pass, Project, RenderState, Shader, TextureObject
+from . import glsl, native, programs, resources
+from .errors import HarnessError, ProjectError
+from .meshes import Meshes, PreparedItem
+from .native import Stage, gl_enums
+from .programs import SYSTEM_MACROS as SYSTEM_MACROS
+from .programs import declared_samplers
+from .project import ComputePass, Object, Pass, Project, RenderTexture
+from .traps import Traps
 from .uniforms import PassUniforms
 
-#: macros that SHADERed 1.5.6 gives to every shader
-SYSTEM_MACROS = {"SHADERED_DESKTOP": "", "SHADERED_VERSION": "1005005"}
-
-#: SHADERed's own search for samplers, over the bare text: comments, dead branches and parameters count
-_SAMPLER = re.compile(r"[a-z]?sampler[^\r\n]+ [^\r\n]+;")
-
-_FILTERS = {
-    "Nearest": gl_enums.GL_NEAREST,
-    "Linear": gl_enums.GL_LINEAR,
-    "Nearest_MipmapNearest": gl_enums.GL_NEAREST_MIPMAP_NEAREST,
-    "Linear_MipmapNearest": gl_enums.GL_LINEAR_MIPMAP_NEAREST,
-    "Nearest_MipmapLinear": gl_enums.GL_NEAREST_MIPMAP_LINEAR,
-    "Linear_MipmapLinear": gl_enums.GL_LINEAR_MIPMAP_LINEAR,
-}
-_WRAPS = {
-    "ClampToEdge": gl_enums.GL_CLAMP_TO_EDGE,
-    "Repeat": gl_enums.GL_REPEAT,
-    "MirroredRepeat": gl_enums.GL_MIRRORED_REPEAT,
+_SAMPLER_TARGETS = {
+    gl_enums.GL_SAMPLER_2D: gl_enums.GL_TEXTURE_2D,
+    gl_enums.GL_SAMPLER_3D: gl_enums.GL_TEXTURE_3D,
+    gl_enums.GL_SAMPLER_CUBE: gl_enums.GL_TEXTURE_CUBE_MAP,
 }
 
 
 @dataclass(frozen=True)
 class BoundTexture:
-    """A texture in its unit. ``sampler`` is the declaration that it went to, None where there are too few."""
+    """A texture in its unit. ``sampler`` is the declaration that it went to, None where there are too few.
+    ``texture`` is None of a render texture: it is made when the size of the window is known."""
 
     unit: int
     sampler: str | None
-    object: TextureObject
-    texture: native.Texture
+    object: Object
+    texture: native.Texture | None
 
 
 @dataclass(frozen=True)
-class PreparedItem:
-    """An item with its mesh; attribute location k reads ``fields[k]``."""
+class BoundStorage:
+    """An image in its unit, or a buffer in its binding."""
 
-    item: Geometry | Model
-    mesh: native.Mesh
-    fields: tuple[Field, ...]
-    state: native.State
+    index: int
+    object: Object
+    made: native.Texture | native.Buffer
 
 
 @dataclass(frozen=True)
 class PreparedPass:
     """A pass ready to draw. ``program.uniforms`` and ``program.attributes`` are what the linker left."""
 
-    shader_pass: Pass
-    vertex: glsl.Source
-    fragment: glsl.Source
+    shader_pass: Pass | ComputePass
+    sources: Mapping[Stage, glsl.Source]
     program: native.Program
     uniforms: PassUniforms
     textures: tuple[BoundTexture, ...]
+    storage: tuple[BoundStorage, ...]
     items: tuple[PreparedItem, ...]
 
+    @property
+    def vertex(self) -> glsl.Source:
+        """The vertex shader's final text."""
+        return self.sources[Stage.VERTEX]
 
-def declared_samplers(fragment_text: str) -> list[str]:
-    """What SHADERed takes for the samplers' names, in the order in which it gives them textures."""
-    return [match[0].partition(" ")[2][:-1] for match in _SAMPLER.finditer(fragment_text)]
+    @property
+    def fragment(self) -> glsl.Source:
+        """The fragment shader's final text."""
+        return self.sources[Stage.FRAGMENT]
 
 
-def prepare(project: Project) -> list[PreparedPass]:
-    """The project's passes, ready to draw; each file is read once.
+@dataclass(frozen=True)
+class _Made:
+    """The objects of the project on the GL side, by name."""
+
+    textures: Mapping[str, native.Texture]
+    images: Mapping[str, native.Texture]
+    buffers: Mapping[str, native.Buffer]
+
+
+def prepare(project: Project, traps: Traps | None = None) -> list[PreparedPass]:
+    """The project's passes, ready to draw; each file is read once. ``traps`` receives the warnings.
 
     ProjectError, with the .sprj's line, for files that are missing or damaged and for what does not fit
-    together; GlslError for shaders.
+    together; GlslError for shaders. With ``traps.keep_going`` what they are about is left out.
     """
+    traps = Traps() if traps is None else traps
     # One thread, so that images are decoded while shaders compile. More gain nothing: Pillow holds the GIL.
     thread = ThreadPoolExecutor(max_workers=1)
     try:
-        images = _start_images(project, thread)
+        pictures = resources.Pictures(project, thread, traps)
         native.open_context()
-        programs = [_program(project, p) for p in project.passes]
-        meshes = _Meshes(project)
-        items = [[meshes.item(p, item) for item in p.items] for p in project.passes]
-        made = {t.path: _texture(project, t, images[t.path]) for t in project.textures}
+        linked = []
+        for p in project.passes:
+            try:
+                linked.append((p, *programs.link(project, p)))
+            except HarnessError as error:
+                traps.survive(error)
+        buffers = resources.make_buffers(project, traps)
+        meshes = Meshes(project, buffers, traps)
+        items = {p.name: meshes.items(p) for p, _, _ in linked if isinstance(p, Pass)}
+        made = _Made(pictures.textures(), resources.make_images(project, traps), buffers)
     finally:
         thread.shutdown(cancel_futures=True)
     return [
         PreparedPass(
             p,
-            vertex,
-            fragment,
+            sources,
             program,
-            bound_uniforms,
-            _bind(project, p, fragment, program, made),
-            tuple(drawn),
+            PassUniforms(project, p, program, traps),
+            _bind_textures(project, p, sources, program, made, traps),
+            _bind_storage(project, p, made, traps),
+            items.get(p.name, ()),
         )
-        for p, (vertex, fragment, program, bound_uniforms), drawn in zip(project.passes, programs, items, strict=True)
+        for p, sources, program in linked
     ]
 
 
-# ---- Shaders ---------------------------------------------------------------------------------------------
-
-
-def _program(project: Project, shader_pass: Pass) -> tuple[glsl.Source, glsl.Source, native.Program, PassUniforms]:
-    defines = SYSTEM_MACROS | {macro.name: macro.value for macro in shader_pass.macros}
-
-    def load(shader: Shader, stage: str) -> glsl.Source:
-        path = project.path(shader.path)
-        if not os.path.isfile(path):
-            raise ProjectError(
-                f'<shader type="{stage}"> of pass "{shader_pass.name}": there is no file "{shader.path}"',
-                project.file,
-                shader.line,
-            )
-        return glsl.load(path, defines, project.include_dirs)
-
-    vertex, fragment = load(shader_pass.vertex, "vs"), load(shader_pass.fragment, "ps")
-    try:
-        program = glsl.link(vertex, fragment)
-    except GlslError as error:
-        raise GlslError(f'{error.message}\n(in pass "{shader_pass.name}")', error.file, error.line) from None
-    return vertex, fragment, program, PassUniforms(project, shader_pass, program)
-
-
-# ---- Meshes ----------------------------------------------------------------------------------------------
-
-
-def _state(state: RenderState) -> native.State:
-    cull = gl_enums.GL_FRONT if state.cull_front else gl_enums.GL_BACK
-    return native.State(
-        cull if state.cull else gl_enums.GL_NONE, gl_enums.GL_CCW if state.ccw else gl_enums.GL_CW, state.depth_clamp
-    )
-
-
-class _Meshes:
-    """Meshes of a project, each file and shape once."""
-
-    def __init__(self, project: Project):
-        self._project = project
-        self._made: dict[object, native.Mesh] = {}
-
-    def item(self, shader_pass: Pass, item: Geometry | Model) -> PreparedItem:
-        if isinstance(item, Geometry) and item.shape == "ScreenQuadNDC":
-            fields = Field.POSITION, Field.TEXCOORD  # whatever the pass's input layout
-        else:
-            fields = tuple(Field[value.upper()] for value in shader_pass.layout)
-        return PreparedItem(item, self._mesh(shader_pass, item), fields, _state(item.state))
-
-    def _mesh(self, shader_pass: Pass, item: Item) -> native.Mesh:
-        if isinstance(item, Geometry):
-            return self._once(
-                (item.shape, item.size), lambda: native.Mesh.create(shapes.vertices(item.shape, item.size))
-            )
-        path = self._project.path(item.path)
-        what = f'<item type="model"> "{item.name}" of pass "{shader_pass.name}"'
-        if not os.path.isfile(path):
-            raise ProjectError(f'{what}: there is no file "{item.path}"', self._project.file, item.line)
-        try:
-            return self._once(item.path, lambda: native.Mesh.load(path))
-        except NativeError as error:
-            raise ProjectError(
-                f'{what}: cannot read the model "{item.path}": {error.message}', self._project.file, item.line
-            ) from None
-
-    def _once(self, key: object, make: Callable[[], native.Mesh]) -> native.Mesh:
-        if key not in self._made:
-            self._made[key] = make()
-        return self._made[key]
-
-
-# ---- Textures --------------------------------------------------------------------------------------------
-
-
-def _texture_error(project: Project, texture: TextureObject, error: textures.TextureError) -> ProjectError:
-    return ProjectError(f'<object type="texture" path="{texture.path}">: {error.message}', project.file, texture.line)
-
-
-def _start_images(project: Project, thread: ThreadPoolExecutor) -> dict[str, Future[np.ndarray]]:
-    """Looks at all headers at once, and starts to decode when all are in order."""
-    total = 0
-    for texture in project.textures:
-        try:
-            width, height = textures.size(project.path(texture.path))
-            total += width * height
-            if total > textures.MOST_PIXELS:
-                raise textures.TextureError(f"more than {textures.MOST_PIXELS} pixels of textures in all")
-        except textures.TextureError as error:
-            raise _texture_error(project, texture, error) from None
-    return {t.path: thread.submit(textures.read, project.path(t.path), vflip=t.vflip) for t in project.textures}
-
-
-def _texture(project: Project, texture: TextureObject, image: Future[np.ndarray]) -> native.Texture:
-    try:
-        pixels = image.result()
-    except textures.TextureError as error:
-        raise _texture_error(project, texture, error) from None
-    return native.Texture(
-        pixels,
-        _FILTERS[texture.min_filter],
-        _FILTERS[texture.mag_filter],
-        _WRAPS[texture.wrap_s],
-        _WRAPS[texture.wrap_t],
-    )
-
-
-def _bind(
+def _bind_textures(
     project: Project,
-    shader_pass: Pass,
-    fragment: glsl.Source,
+    shader_pass: Pass | ComputePass,
+    sources: Mapping[Stage, glsl.Source],
     program: native.Program,
-    made: dict[str, native.Texture],
+    made: _Made,
+    traps: Traps,
 ) -> tuple[BoundTexture, ...]:
-    """The pass's textures by slot, gaps closed: the k-th to unit k and to the k-th sampler declared."""
-    slots = sorted(
-        (bind.slot, t.path, t) for t in project.textures for bind in t.binds if bind.pass_name == shader_pass.name
-    )
-    samplers = declared_samplers(fragment.text)
+    """The pass's textures by slot, gaps closed: the k-th to unit k and to its pixel shader's k-th declared sampler.
+
+    The samplers of compute shaders SHADERed leaves where their own ``layout(binding = ...)`` puts them.
+    """
+    available = {**made.textures, **made.images}
+    objects = [o for o in project.bound(shader_pass.name) if isinstance(o, RenderTexture) or o.name in available]
+    samplers = declared_samplers(sources[Stage.FRAGMENT].text) if Stage.FRAGMENT in sources else []
     bound = tuple(
-        BoundTexture(unit, samplers[unit] if unit < len(samplers) else None, texture, made[path])
-        for unit, (_, path, texture) in enumerate(slots)
+        BoundTexture(unit, samplers[unit] if unit < len(samplers) else None, o, available.get(o.name))
+        for unit, o in enumerate(objects)
     )
     for texture in bound:
-        if texture.sampler in program.uniforms:
-            program.set_uniform(texture.sampler, gl_enums.GL_SAMPLER_2D, np.array([texture.unit], np.int32))
+        uniform = program.uniforms.get(texture.sampler)
+        if uniform is not None:
+            program.set_uniform(texture.sampler, uniform.type, np.array([texture.unit], np.int32))
+            _warn_of_kind(project, shader_pass, texture, uniform.type, traps)
     given = {texture.sampler for texture in bound}
+    if isinstance(shader_pass, ComputePass):
+        return bound
     for name, uniform in program.uniforms.items():
-        if uniform.type == gl_enums.GL_SAMPLER_2D and name not in given:
-            # SHADERed would show whatever is in unit 0.
-            raise ProjectError(
-                f'pass "{shader_pass.name}": no texture goes to the sampler "{name}"; {len(bound)} are bound '
-                f"and the declarations that SHADERed finds are, in order: {', '.join(samplers) or 'none'}",
-                project.file,
+        if uniform.type in _SAMPLER_TARGETS and name not in given:
+            traps.warn(
+                f'pass "{shader_pass.name}": no texture goes to the sampler "{name}", and it shows what is in unit 0; '
+                f"{len(bound)} are bound and the declarations that SHADERed finds are, in order: "
+                f"{', '.join(samplers) or 'none'}",
+                str(project.file),
                 shader_pass.line,
             )
     return bound
+
+
+def _warn_of_kind(
+    project: Project, shader_pass: Pass | ComputePass, bound: BoundTexture, gl_type: int, traps: Traps
+) -> None:
+    target = gl_enums.GL_TEXTURE_2D if bound.texture is None else bound.texture.target
+    if _SAMPLER_TARGETS.get(gl_type, target) != target:
+        traps.warn(
+            f'pass "{shader_pass.name}": the sampler "{bound.sampler}" is a {gl_enums.GLSL_TYPE_NAMES[gl_type]}, but '
+            f'"{bound.object.name}" goes to it, which is none',
+            str(project.file),
+            bound.object.line,
+        )
+
+
+def _bind_storage(
+    project: Project, shader_pass: Pass | ComputePass, made: _Made, traps: Traps
+) -> tuple[BoundStorage, ...]:
+    """What the pass can write to, by slot, gaps closed: the k-th to image unit or binding k."""
+    found = []
+    for described in project.bound(shader_pass.name, storage=True):
+        if described.name in made.buffers:
+            found.append((described, made.buffers[described.name]))
+        elif described.name in made.images:
+            found.append((described, made.images[described.name]))
+    bound = []
+    for index, (described, thing) in enumerate(found):
+        if isinstance(thing, native.Texture) and isinstance(shader_pass, Pass):
+            traps.survive(
+                ProjectError(
+                    f'the image "{described.name}" is bound to pass "{shader_pass.name}" to be written: SHADERed does '
+                    "that in compute passes alone, and here it is not supported",
+                    project.file,
+                    described.line,
+                )
+            )
+        else:
+            bound.append(BoundStorage(index, described, thing))
+    return tuple(bound)

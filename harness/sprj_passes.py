@@ -1,38 +1,30 @@
-"""Reads a drawn ``<pass>`` of a .sprj: its shaders, input layout, items, variables and macros."""
+"""Reads a drawn ``<pass>`` of a .sprj: its shaders, targets and input layout, and what the other readers read."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
 
-from .project import (
-    LAYOUT_VALUES,
-    SHAPES,
-    SYSTEM_TYPES,
-    VARIABLE_TYPES,
-    Geometry,
-    ItemValue,
-    Macro,
-    Model,
-    Pass,
-    RenderState,
-    Shader,
-    Variable,
-)
-from .sprj_values import (
-    MACRO_NAME_LIMIT,
-    MACRO_VALUE_LIMIT,
-    NAME_LIMIT,
-    child_real,
-    flag,
-    limited,
-    relative_path,
-    truth,
-    values,
-)
+from .project import LAYOUT_VALUES, ComputePass, Pass, Shader
+from .sprj_items import read_items
+from .sprj_values import choice, flag, integer, relative_path
+from .sprj_variables import read_item_values, read_macros, read_variables
 from .xml_lines import Element
 
 #: the layout of a pass that gives none
 DEFAULT_LAYOUT = ("Position", "Normal", "Texcoord")
+MOST_TARGETS = 16
+MOST_PATCH_VERTICES = 32
+#: the most work groups that GL promises in each direction
+MOST_GROUPS = 65535
+
+#: stage in the .sprj -> name in messages, name of the field in Pass
+STAGES = {
+    "vs": ("vertex", "vertex"),
+    "ps": ("pixel", "fragment"),
+    "gs": ("geometry", "geometry"),
+    "tcs": ("tessellation control", "tess_control"),
+    "tes": ("tessellation evaluation", "tess_evaluation"),
+}
 
 
 def items_of(element: Element) -> list[Element]:
@@ -41,196 +33,122 @@ def items_of(element: Element) -> list[Element]:
     return found.children if found else []
 
 
-def read_pass(element: Element, render_textures: Collection[str]) -> Pass:
-    """The pass; ``render_textures`` are the names of those among the project's objects."""
+def read_pass(element: Element, render_textures: Collection[str], items: list[Element]) -> Pass:
+    """The pass with those of its items that have a name of their own; ``render_textures`` are the names of those among
+    the project's objects."""
     name = element.attributes["name"]
-    _refuse_other_targets(element, name, render_textures)
-    vertex, fragment = _shaders(element, name)
-    variables = tuple(_variable(v, name) for v in element.nested("variables", "variable"))
+    variables = read_variables(element.nested("variables", "variable"), name)
+    drawn, end_state = read_items(items, name)
+    if not end_state.depth_write:
+        items[-1].warn(
+            f'pass "{name}" ends with depthmask false: SHADERed\'s next clears leave the depth as it is, '
+            "in the editor from the second frame on"
+        )
+    tessellated = _is_used(element, ("tcs", "tes"))
     return Pass(
         name=name,
-        vertex=vertex,
-        fragment=fragment,
-        layout=_layout(element, name),
-        items=_items(element, name),
+        **_shaders(element, name, tessellated),
+        layout=read_layout(element, name),
+        items=drawn,
         variables=variables,
-        item_values=_item_values(element, name, variables),
-        macros=_macros(element, name),
+        item_values=read_item_values(
+            element.nested("itemvalues", "value"), name, variables, [item.name for item in drawn]
+        ),
+        macros=read_macros(element.nested("macros", "define"), name),
+        line=element.line,
+        patch_vertices=_patch_vertices(element, name) if tessellated else 0,
+        targets=_targets(element, name, render_textures),
+        end_state=end_state,
+    )
+
+
+def read_compute_pass(element: Element) -> ComputePass:
+    """A compute pass."""
+    name = element.attributes["name"]
+    shaders = element.all("shader")
+    if not shaders:
+        raise element.error(f'pass "{name}" has no compute shader (<shader type="cs">)')
+    groups = element.child("groupsize")
+    counts = []
+    for axis in "xyz":
+        count = 1
+        if groups is not None and axis in groups.attributes:
+            count = integer(groups, groups.attributes[axis], f'{axis} of <groupsize> of pass "{name}"', unsigned=True)
+        if count > MOST_GROUPS:
+            raise groups.error(f'pass "{name}": {count} work groups along {axis}; at most {MOST_GROUPS} work')
+        counts.append(count)
+    if 0 in counts:
+        groups.warn(f'pass "{name}": 0 work groups: it does nothing')
+    return ComputePass(
+        name=name,
+        compute=_shader(shaders[-1], f'the compute shader of pass "{name}"'),
+        groups=(counts[0], counts[1], counts[2]),
+        variables=read_variables(element.nested("variables", "variable"), name),
+        macros=read_macros(element.nested("macros", "define"), name),
         line=element.line,
     )
 
 
-def _refuse_other_targets(element: Element, name: str, render_textures: Collection[str]) -> None:
-    targets = element.all("rendertexture")
-    for target in targets:
-        texture = target.attributes.get("name", "")
+def _targets(element: Element, name: str, render_textures: Collection[str]) -> tuple[str | None, ...]:
+    targets = []
+    for target in element.all("rendertexture"):
+        texture = target.get("name")
         if texture and texture not in render_textures:
             raise target.error(f'pass "{name}" draws to the render texture "{texture}", which is not among the objects')
-        if texture:
-            raise target.error(f'pass "{name}" draws to the render texture "{texture}": that is not supported')
-    if len(targets) > 1:
-        raise targets[1].error(f'pass "{name}": more than one <rendertexture> is not supported')
+        targets.append(texture or None)
+    if len(targets) > MOST_TARGETS:
+        raise element.error(f'pass "{name}" has {len(targets)} targets; SHADERed can hold {MOST_TARGETS}')
+    return tuple(targets) or (None,)
 
 
-def _shaders(element: Element, name: str) -> tuple[Shader, Shader]:
+# ---- Shaders -----------------------------------------------------------------------------------------------
+
+
+def _is_used(element: Element, stages: tuple[str, ...]) -> bool:
+    """Whether the last shader of one of those stages says so."""
+    used = [flag(s, "used", False) for s in element.all("shader") if s.get("type") in stages]
+    return used[-1] if used else False
+
+
+def _shaders(element: Element, name: str, tessellated: bool) -> dict[str, Shader]:
+    used = {"vs", "ps"} | ({"gs"} if _is_used(element, ("gs",)) else set()) | ({"tcs", "tes"} if tessellated else set())
     found: dict[str, Shader] = {}
     for shader in element.all("shader"):
-        stage = shader.attributes.get("type", "")
-        if stage in ("gs", "tcs", "tes") and flag(shader, "used", False):
-            raise shader.error(f'pass "{name}": shaders of type "{stage}" are not supported')
-        if stage not in ("vs", "ps"):
-            continue
-        what = f'the {stage} shader of pass "{name}"'
-        path = relative_path(shader, shader.attributes.get("path", ""), what)
-        if path.rpartition(".")[2] in ("hlsl", "vk"):
-            raise shader.error(f'{what}: "{path}" is not GLSL by its extension, and that is not supported')
-        entry = shader.attributes.get("entry", "")
-        if entry != "main":
-            raise shader.error(f'{what}: the entry is "{entry}"; GLSL has no other than "main"')
-        found[stage] = Shader(path, shader.line)
-    for stage, long_name in (("vs", "vertex"), ("ps", "pixel")):
-        if stage not in found:
+        stage = shader.get("type")
+        if stage in used:
+            found[STAGES[stage][1]] = _shader(shader, f'the {stage} shader of pass "{name}"')
+        elif stage in ("gs", "tcs", "tes") and "used" not in shader.attributes and shader.get("path"):
+            shader.warn(f'pass "{name}": the {STAGES[stage][0]} shader is left out: it lacks used="true"')
+    # A missing control stage is allowed by GL, but SHADERed attaches a shader that is none and links nothing.
+    for stage in sorted(used, reverse=True):
+        long_name, attribute = STAGES[stage]
+        if attribute not in found:
             raise element.error(f'pass "{name}" has no {long_name} shader (<shader type="{stage}">)')
-    return found["vs"], found["ps"]
+    return found
 
 
-def _layout(element: Element, name: str) -> tuple[str, ...]:
-    layout = []
-    for item in element.nested("inputlayout", "item"):
-        value = item.attributes.get("value", "")
-        if value not in LAYOUT_VALUES:
-            raise item.error(
-                f'pass "{name}": the input layout value "{value}" is not supported; there are '
-                + ", ".join(LAYOUT_VALUES)
-            )
-        layout.append(value)
-    return tuple(layout) or DEFAULT_LAYOUT
+def _shader(shader: Element, what: str) -> Shader:
+    path = relative_path(shader, shader.get("path"), what)
+    if path.rpartition(".")[2] in ("hlsl", "vk"):
+        raise shader.error(f'{what}: "{path}" is not GLSL by its extension, and that is not supported')
+    entry = shader.get("entry")
+    if entry != "main":
+        raise shader.error(f'{what}: the entry is "{entry}"; GLSL has no other than "main"')
+    return Shader(path, shader.line)
 
 
-def _variable(element: Element, pass_name: str) -> Variable:
-    name = limited(element, element.attributes.get("name", ""), NAME_LIMIT, "the name of the variable")
-    what = f'variable "{name}" of pass "{pass_name}"'
-    variable_type = VARIABLE_TYPES.get(element.attributes.get("type", ""), VARIABLE_TYPES["float"])
-    system = element.attributes.get("system")
-    if system is not None and system not in SYSTEM_TYPES:
-        raise element.error(f'{what}: the system value "{system}" is not supported')
-    if system is not None and SYSTEM_TYPES[system] != variable_type.name:
-        system = None  # and so the constant is 0, as in SHADERed
-    if system is None and "function" in element.attributes:
-        raise element.error(f'{what}: functions ("{element.attributes["function"]}") are not supported')
-    if system is not None and flag(element, "lastframe", False):
-        raise element.error(f"{what}: values of the last frame are not supported")
-    invert = flag(element, "invert", False) and variable_type.rows > 1
-    if invert and system is None:
-        # SHADERed inverts it again for each item: every second one gets the matrix itself.
-        raise element.error(f"{what}: inverting a constant is not supported")
-    value = values(element, variable_type, what) if system is None else ()
-    return Variable(name, variable_type, value, system, invert, element.line)
+def _patch_vertices(element: Element, name: str) -> int:
+    count = integer(element, element.get("patchverts", "1"), f'patchverts of pass "{name}"')
+    clamped = min(max(count, 1), MOST_PATCH_VERTICES)
+    if clamped != count:
+        element.warn(f'pass "{name}": patchverts is {count}, of which SHADERed makes {clamped}')
+    return clamped
 
 
-def _item_values(element: Element, name: str, variables: tuple[Variable, ...]) -> tuple[ItemValue, ...]:
-    """The values of single items. SHADERed leaves out those for what is not in the pass; for a system value
-    one does nothing."""
-    items = {item.attributes["name"] for item in items_of(element)}
-    found = []
-    for value in element.nested("itemvalues", "value"):
-        of, item = value.attributes.get("variable", ""), value.attributes.get("for", "")
-        variable = next((v for v in variables if v.name == of), None)
-        if variable is None or item not in items or variable.system is not None:
-            continue
-        what = f'variable "{of}" for item "{item}" of pass "{name}"'
-        found.append(ItemValue(variable, item, values(value, variable.type, what), value.line))
-    return tuple(found)
-
-
-def _macros(element: Element, name: str) -> tuple[Macro, ...]:
-    macros: dict[str, Macro] = {}
-    for define in element.nested("macros", "define"):
-        if not flag(define, "active", True):
-            continue
-        what = f'macro of pass "{name}"'
-        macro = Macro(
-            name=limited(define, define.attributes.get("name", ""), MACRO_NAME_LIMIT, f"the name of a {what}"),
-            value=limited(define, define.text, MACRO_VALUE_LIMIT, f"the value of a {what}"),
-            line=define.line,
-        )
-        if not macro.name.strip():
-            raise define.error(f"a {what} has no name")
-        other = macros.setdefault(macro.name, macro)
-        if other.value != macro.value:
-            raise define.error(f'pass "{name}" defines the macro "{macro.name}" twice, first in line {other.line}')
-    return tuple(macros.values())
-
-
-#: tags of a render state that are supported with one value alone, SHADERed's default
-_FIXED_STATES = {
-    "wireframe": "false",
-    "blend": "false",
-    "alpha2coverage": "false",
-    "depthtest": "true",
-    "depthmask": "true",
-    "stenciltest": "false",
-}
-
-
-def _items(element: Element, pass_name: str) -> tuple[Geometry | Model, ...]:
-    """The items that are drawn; a render state among them holds for those after it."""
-    state, found = RenderState(), []
-    for item in items_of(element):
-        if item.attributes.get("type") == "renderstate":
-            state = _render_state(item, pass_name)
-        else:
-            found.append(_item(item, pass_name, state))
-    return tuple(found)
-
-
-def _render_state(element: Element, pass_name: str) -> RenderState:
-    """A render state; tags that it leaves out take SHADERed's defaults, depth clamp among them, not the last state."""
-    what = f'render state "{element.attributes["name"]}" of pass "{pass_name}"'
-    for tag in element.children:
-        if tag.name in _FIXED_STATES and truth(tag.text) != truth(_FIXED_STATES[tag.name]):
-            raise tag.error(f"{what}: <{tag.name}>{tag.text}</{tag.name}> is not supported")
-        if tag.name == "depthfunc" and tag.text != "Less":
-            raise tag.error(f"{what}: <depthfunc>{tag.text}</depthfunc> is not supported")
-
-    def choice(tag: str, default: bool) -> bool:
-        found = element.all(tag)
-        return truth(found[-1].text) if found else default
-
-    return RenderState(
-        choice("cull", True), choice("cullfront", False), choice("ccw", True), choice("depthclamp", True)
+def read_layout(element: Element, name: str) -> tuple[str, ...]:
+    """The input layout of a pass."""
+    layout = tuple(
+        choice(item, item.get("value"), LAYOUT_VALUES, "Position", f'the input layout value of pass "{name}"')
+        for item in element.nested("inputlayout", "item")
     )
-
-
-def _item(element: Element, pass_name: str, state: RenderState) -> Geometry | Model:
-    name, kind = element.attributes["name"], element.attributes.get("type", "")
-    what = f'item "{name}" of pass "{pass_name}"'
-    if kind not in ("geometry", "model"):
-        raise element.error(f'{what}: items of type "{kind}" are not supported')
-    if any(truth(instanced.text) for instanced in element.all("instanced")[-1:]):
-        raise element.error(f"{what}: <instanced> is not supported")
-    if element.child("instancebuffer"):
-        raise element.error(f"{what}: <instancebuffer> is not supported")
-
-    def vector(names: str, default: float) -> tuple[float, float, float]:
-        x, y, z = (child_real(element, tag, what, default) for tag in names.split())
-        return x, y, z
-
-    common = {
-        "name": name,
-        "state": state,
-        "position": vector("x y z", 0.0),
-        "rotation": vector("pitch yaw roll", 0.0),
-        "scale": vector("scaleX scaleY scaleZ", 1.0),
-        "line": element.line,
-    }
-    if kind == "model":
-        path = (element.all("filepath") or [element])[-1]
-        return Model(**common, path=relative_path(path, path.text if path is not element else "", what))
-    for topology in element.all("topology"):
-        if topology.text != "TriangleList":
-            raise topology.error(f'{what}: the topology "{topology.text}" is not supported, only TriangleList')
-    shape = (element.all("type") or [None])[-1]
-    if shape is not None and shape.text not in SHAPES:
-        raise shape.error(f'{what}: there is no shape "{shape.text}"')
-    return Geometry(**common, shape=shape.text if shape else "Cube", size=vector("width height depth", 1.0))
+    return layout or DEFAULT_LAYOUT

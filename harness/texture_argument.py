@@ -94,7 +94,8 @@ class Texture:
     def bind(self, unit: int) -> None:
         """Makes it the texture of a unit of the open context."""
         if self._texture is None:
-            self._texture = native.Texture(self._texels, *self._filters, self._wrap, self._wrap, self._format)
+            sampling = native.Sampling(*self._filters, self._wrap, self._wrap)
+            self._texture = native.Texture.of_format(self._texels, self._format, sampling)
         self._texture.bind(unit)
 
 

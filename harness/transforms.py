@@ -19,11 +19,15 @@ def radians(degrees: float) -> np.float32:
 
 
 def _sin(angle: np.float32) -> np.float32:
-    return f32(math.sin(angle))
+    return f32(math.sin(angle)) if math.isfinite(angle) else f32(math.nan)
 
 
 def _cos(angle: np.float32) -> np.float32:
-    return f32(math.cos(angle))
+    return f32(math.cos(angle)) if math.isfinite(angle) else f32(math.nan)
+
+
+def _tan(angle: np.float32) -> np.float32:
+    return f32(math.tan(angle)) if math.isfinite(angle) else f32(math.nan)
 
 
 def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -95,7 +99,7 @@ def look_at(eye: np.ndarray, center: np.ndarray, up: np.ndarray) -> np.ndarray:
 def perspective(field_of_view: float, aspect: float, near: float, far: float) -> np.ndarray:
     """View to clip space, depth -1...1. ``field_of_view`` is the vertical one, ``aspect`` width by height."""
     near, far = f32(near), f32(far)
-    half = f32(math.tan(f32(field_of_view) / f32(2)))
+    half = _tan(f32(field_of_view) / f32(2))
     m = np.zeros((4, 4), f32)
     m[0, 0] = f32(1) / (f32(aspect) * half)
     m[1, 1] = f32(1) / half
@@ -115,7 +119,12 @@ def orthographic(left: float, right: float, bottom: float, top: float, near: flo
 
 
 def inverse(m: np.ndarray) -> np.ndarray:
-    """The inverse by cofactors, as glm::inverse rounds it; infinities and NaN where there is none."""
+    """The inverse (2, 2), (3, 3) or (4, 4) by cofactors, as glm::inverse rounds it; infinities and NaN where there is
+    none."""
+    if len(m) == 2:
+        return _inverse2(m)
+    if len(m) == 3:
+        return _inverse3(m)
     columns = m.T
     first, second = [2, 2, 1, 1], [3, 3, 3, 2]
 
@@ -137,3 +146,46 @@ def inverse(m: np.ndarray) -> np.ndarray:
     terms = columns[0] * cofactors[0]
     with np.errstate(divide="ignore", invalid="ignore"):
         return cofactors * (f32(1) / ((terms[0] + terms[1]) + (terms[2] + terms[3])))
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def _inverse2(m: np.ndarray) -> np.ndarray:
+    (a, b), (c, d) = m
+    return np.array([[d, -b], [-c, a]], f32) * (f32(1) / (a * d - b * c))
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def _inverse3(m: np.ndarray) -> np.ndarray:
+    (a, b, c), (d, e, f), (g, h, i) = m.T  # columns
+    determinant = a * (e * i - h * f) - d * (b * i - h * c) + g * (b * f - e * c)
+    adjugate = [
+        [e * i - h * f, -(d * i - g * f), d * h - g * e],
+        [-(b * i - h * c), a * i - g * c, -(a * h - g * b)],
+        [b * f - e * c, -(a * f - d * c), a * e - d * b],
+    ]
+    return np.array(adjugate, f32) * (f32(1) / determinant)
+
+
+def axis_rotation(axis: Sequence[float], angle: float) -> np.ndarray:
+    """The rotation about an axis through the origin by an angle in radians, as glm::rotate rounds it."""
+    c, s = _cos(f32(angle)), _sin(f32(angle))
+    axis = normalized(np.array(axis, f32))
+    x, y, z = axis
+    part = (f32(1) - c) * axis
+    m = np.eye(4, dtype=f32)
+    m[:3, 0] = c + part[0] * x, part[0] * y + s * z, part[0] * z - s * y
+    m[:3, 1] = part[1] * x - s * z, c + part[1] * y, part[1] * z + s * x
+    m[:3, 2] = part[2] * x + s * y, part[2] * y - s * x, c + part[2] * z
+    return m
+
+
+def perspective_of_size(field_of_view: float, width: float, height: float, near: float, far: float) -> np.ndarray:
+    """View to clip space by the vertical field of view and a size, as glm::perspectiveFov rounds it."""
+    half = f32(0.5) * f32(field_of_view)
+    up = _cos(half) / _sin(half)
+    near, far = f32(near), f32(far)
+    m = np.zeros((4, 4), f32)
+    m[0, 0], m[1, 1] = up * f32(height) / f32(width), up
+    m[2, 2], m[2, 3] = -(far + near) / (far - near), -(f32(2) * far * near) / (far - near)
+    m[3, 2] = -1
+    return m

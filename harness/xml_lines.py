@@ -1,6 +1,6 @@
 """XML as plain elements that know their line, read as SHADERed's parser (pugixml) would, but strictly.
 
-Document type declarations are refused outright, and entities with them: a few lines could grow to gigabytes.
+Document types with declarations are refused outright, and entities with them: a few lines could grow to gigabytes.
 """
 
 from __future__ import annotations
@@ -11,6 +11,10 @@ from pathlib import Path
 from xml.parsers import expat
 
 from .errors import ProjectError
+from .traps import Traps
+
+#: far beyond any project; a file of nothing but tags takes some hundred times its size in memory
+MOST_BYTES, DEEPEST = 16 << 20, 64
 
 
 @dataclass(eq=False)
@@ -23,6 +27,7 @@ class Element:
     line: int
     text: str = ""
     children: list[Element] = field(default_factory=list)
+    traps: Traps = field(default_factory=Traps, repr=False)
 
     def child(self, name: str) -> Element | None:
         """The first child of that name."""
@@ -37,16 +42,25 @@ class Element:
         found = self.child(outer)
         return found.all(name) if found else []
 
+    def get(self, name: str, default: str = "") -> str:
+        """The value of an attribute."""
+        return self.attributes.get(name, default)
+
     def error(self, message: str) -> ProjectError:
         """The error ``message`` at this element's line."""
         return ProjectError(message, self.file, self.line)
+
+    def warn(self, message: str) -> None:
+        """Adds the warning ``message`` at this element's line."""
+        self.traps.warn(message, self.file, self.line)
 
 
 class _Builder:
     """Receives expat's events and builds the tree."""
 
-    def __init__(self, file: str):
+    def __init__(self, file: str, traps: Traps):
         self.file = file
+        self.traps = traps
         self.root: Element | None = None
         self.open: list[Element] = []
         self._run: list[str] = []
@@ -58,13 +72,14 @@ class _Builder:
         # A comment ends a run of text, as it does for pugixml.
         parser.CommentHandler = lambda _: self._end_run()
         parser.ProcessingInstructionHandler = lambda *_: self._end_run()
+        parser.StartCdataSectionHandler = parser.EndCdataSectionHandler = self._end_run
 
-    def _doctype(self, *_) -> None:
-        raise ProjectError(
-            "a document type declaration (<!DOCTYPE>) is not supported",
-            self.file,
-            self.parser.CurrentLineNumber,
-        )
+    def _error(self, message: str) -> ProjectError:
+        return ProjectError(message, self.file, self.parser.CurrentLineNumber)
+
+    def _doctype(self, name: str, system: str | None, public: str | None, has_declarations: int) -> None:
+        if has_declarations:
+            raise self._error("a document type with declarations (<!DOCTYPE ... [...]>) is not supported")
 
     def _end_run(self) -> None:
         text = "".join(self._run)
@@ -74,7 +89,9 @@ class _Builder:
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         self._end_run()
-        element = Element(name, attributes, self.file, self.parser.CurrentLineNumber)
+        if len(self.open) == DEEPEST:
+            raise self._error(f"elements within elements, more than {DEEPEST} deep")
+        element = Element(name, attributes, self.file, self.parser.CurrentLineNumber, traps=self.traps)
         if self.open:
             self.open[-1].children.append(element)
         else:
@@ -86,14 +103,17 @@ class _Builder:
         self.open.pop()
 
 
-def parse(path: str | os.PathLike) -> Element:
-    """The root element of an XML file. ProjectError with file and line when it is missing or malformed."""
+def parse(path: str | os.PathLike, traps: Traps | None = None) -> Element:
+    """The root element of an XML file. ProjectError with file and line when it is missing, malformed or too large."""
     file = str(path)
     try:
-        data = Path(path).read_bytes()
+        with open(Path(path), "rb") as opened:
+            data = opened.read(MOST_BYTES + 1)
     except OSError as error:
         raise ProjectError(f"cannot read the project: {error.strerror}", file) from error
-    builder = _Builder(file)
+    if len(data) > MOST_BYTES:
+        raise ProjectError(f"a project of more than {MOST_BYTES >> 20} MiB", file)
+    builder = _Builder(file, Traps() if traps is None else traps)
     try:
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:

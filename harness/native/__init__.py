@@ -27,17 +27,10 @@ class Stage(enum.IntEnum):
 
     VERTEX = 0
     FRAGMENT = 1
-
-
-class Field(enum.IntEnum):
-    """Fields of a vertex, as hn_field."""
-
-    POSITION = 0
-    NORMAL = 1
-    TEXCOORD = 2
-    TANGENT = 3
-    BITANGENT = 4
-    COLOR = 5
+    GEOMETRY = 2
+    TESS_CONTROL = 3
+    TESS_EVALUATION = 4
+    COMPUTE = 5
 
 
 class Variable(NamedTuple):
@@ -46,17 +39,6 @@ class Variable(NamedTuple):
     type: int
     size: int
     location: int
-
-
-class State(NamedTuple):
-    """What a draw does with the faces that it meets, as hn_state; ``cull`` and ``front`` are GL's enumerations."""
-
-    cull: int = gl_enums.GL_BACK
-    front: int = gl_enums.GL_CCW
-    depth_clamp: bool = False
-
-
-START_OF_PASS = State()
 
 
 class _Variable(ctypes.Structure):
@@ -82,13 +64,6 @@ class _Output(ctypes.Structure):
     _fields_ = [("data", ctypes.c_void_p), ("components", ctypes.c_uint32)]
 
 
-class _State(ctypes.Structure):
-    _fields_ = [("cull", ctypes.c_uint32), ("front", ctypes.c_uint32), ("depth_clamp", ctypes.c_int)]
-
-
-#: floats in an hn_vertex: position 3, normal 3, texcoord 2, tangent 3, bitangent 3, colour 4
-VERTEX_FLOATS = 18
-
 _INT, _UINT, _SIZE = ctypes.c_int, ctypes.c_uint32, ctypes.c_size_t
 _POINTER, _TEXT = ctypes.c_void_p, ctypes.c_char_p
 _VARIABLES = ctypes.POINTER(_Variable)
@@ -109,6 +84,7 @@ _PROTOTYPES = {
     "hn_glsl_version": (_TEXT, []),
     "hn_glsl_spirv_vulkan": (_INT, [_INT, _TEXT, ctypes.POINTER(_POINTER), ctypes.POINTER(_SIZE)]),
     "hn_program_create": (_UINT, [_TEXT, _TEXT]),
+    "hn_program_create_stages": (_UINT, [ctypes.POINTER(_TEXT)]),
     "hn_program_delete": (None, [_UINT]),
     "hn_program_uniforms": (_INT, [_UINT, _VARIABLES, _INT]),
     "hn_program_attributes": (_INT, [_UINT, _VARIABLES, _INT]),
@@ -122,33 +98,11 @@ _PROTOTYPES = {
     "hn_compute_limit": (_SIZE, [_UINT]),
     "hn_evaluate_vertex": (_TEXT, []),
     "hn_evaluate_limit": (_SIZE, []),
-    "hn_mesh_load": (_POINTER, [_TEXT]),
-    "hn_mesh_create": (_POINTER, [_POINTER, _SIZE, _POINTER, _SIZE]),
-    "hn_mesh_delete": (None, [_POINTER]),
-    "hn_texture_create": (_UINT, [_INT, _INT, _POINTER, _UINT, _UINT, _UINT, _UINT]),
-    "hn_texture_create_as": (_UINT, [_UINT, _INT, _INT, _POINTER, _UINT, _UINT, _UINT, _UINT]),
-    "hn_texture_delete": (None, [_UINT]),
-    "hn_texture_bind": (_INT, [_INT, _UINT]),
-    "hn_target_create": (_POINTER, [_INT, _INT, _INT]),
-    "hn_target_delete": (None, [_POINTER]),
-    "hn_target_clear": (_INT, [_POINTER, _POINTER]),
-    "hn_draw": (_INT, [_POINTER, _UINT, _POINTER, ctypes.POINTER(_INT), _INT, ctypes.POINTER(_State)]),
-    "hn_target_read_bytes": (_INT, [_POINTER, _POINTER]),
-    "hn_target_read_floats": (_INT, [_POINTER, _POINTER]),
 }
 
 
 #: kind of a numpy type -> type of a texel's numbers
 _BASES = {"f": gl_enums.GL_FLOAT, "i": gl_enums.GL_INT, "u": gl_enums.GL_UNSIGNED_INT}
-
-
-#: format of a texture -> numpy's type of its numbers
-_TEXELS = {
-    gl_enums.GL_RGBA8: np.uint8,
-    gl_enums.GL_RGBA32F: np.float32,
-    gl_enums.GL_RGBA32I: np.int32,
-    gl_enums.GL_RGBA32UI: np.uint32,
-}
 
 
 def _load() -> ctypes.CDLL:
@@ -298,6 +252,14 @@ class Program:
         self._take(_library.hn_program_create(vertex.encode(), fragment.encode()), compute=False)
 
     @classmethod
+    def of_stages(cls, texts: Mapping[Stage, str]) -> Program:
+        """A program of these stages, to draw with or, of a compute stage alone, to dispatch."""
+        program = cls.__new__(cls)
+        listed = (ctypes.c_char_p * len(Stage))(*(texts[s].encode() if s in texts else None for s in Stage))
+        program._take(_library.hn_program_create_stages(listed), compute=False)
+        return program
+
+    @classmethod
     def compute(cls, text: str) -> Program:
         """A program of one compute stage."""
         program = cls.__new__(cls)
@@ -363,99 +325,18 @@ class Program:
             _library.hn_program_delete(self._name)
 
 
-class Mesh:
-    """Vertices and triangles on the GL side. Use ``load`` or ``create``."""
-
-    def __init__(self, handle: int):
-        self._handle = handle
-
-    @classmethod
-    def load(cls, path: str | Path) -> Mesh:
-        """All meshes of a model file, read as SHADERed reads them."""
-        return cls(_made(_library.hn_mesh_load(os.fsencode(path))))
-
-    @classmethod
-    def create(cls, vertices: np.ndarray, indices: np.ndarray | None = None) -> Mesh:
-        """A mesh from ``vertices`` (n, 18), fields in the order of Field, and triangle ``indices`` (m,) or none."""
-        vertices = np.ascontiguousarray(vertices, np.float32)
-        if vertices.ndim != 2 or vertices.shape[1] != VERTEX_FLOATS:
-            raise ValueError(f"vertices of shape {vertices.shape}, not (n, {VERTEX_FLOATS})")
-        if indices is None:
-            return cls(_made(_library.hn_mesh_create(vertices.ctypes.data, len(vertices), None, 0)))
-        indices = np.ascontiguousarray(indices, np.uint32)
-        return cls(
-            _made(_library.hn_mesh_create(vertices.ctypes.data, len(vertices), indices.ctypes.data, indices.size))
-        )
-
-    def __del__(self):
-        if getattr(self, "_handle", None):
-            _library.hn_mesh_delete(self._handle)
-
-
-class Texture:
-    """A texture; ``texels`` (h, w, 4) with row 0 at v = 0, filters and wraps GL's.
-
-    ``texel_format`` is GL's: GL_RGBA8 takes uint8, GL_RGBA32F float32, GL_RGBA32I and GL_RGBA32UI
-    int32 and uint32.
-    """
-
-    def __init__(
-        self,
-        texels: np.ndarray,
-        min_filter: int,
-        mag_filter: int,
-        wrap_s: int,
-        wrap_t: int,
-        texel_format: int = gl_enums.GL_RGBA8,
-    ):
-        texels = np.ascontiguousarray(texels, _TEXELS[texel_format])
-        height, width, channels = texels.shape
-        if channels != 4:
-            raise ValueError(f"texels of shape {texels.shape}, not (h, w, 4)")
-        self._name = _made(
-            _library.hn_texture_create_as(
-                texel_format, width, height, texels.ctypes.data, min_filter, mag_filter, wrap_s, wrap_t
-            )
-        )
-
-    def bind(self, unit: int) -> None:
-        """Makes it the texture of ``unit``."""
-        _done(_library.hn_texture_bind(unit, self._name))
-
-    def __del__(self):
-        if getattr(self, "_name", 0):
-            _library.hn_texture_delete(self._name)
-
-
-class Target:
-    """A framebuffer as SHADERed's window: 32-bit float colour, 24-bit depth."""
-
-    def __init__(self, width: int, height: int, alpha: bool):
-        self.width, self.height = width, height
-        self._handle = _made(_library.hn_target_create(width, height, int(alpha)))
-
-    def clear(self, rgba: Sequence[float]) -> None:
-        """Sets colour, and depth to 1."""
-        color = np.asarray(rgba, np.float32)
-        _done(_library.hn_target_clear(self._handle, color.ctypes.data))
-
-    def draw(self, program: Program, mesh: Mesh, fields: Sequence[Field], state: State = START_OF_PASS) -> None:
-        """Draws a mesh; attribute location k reads ``fields[k]``."""
-        layout = (ctypes.c_int * len(fields))(*fields)
-        _done(_library.hn_draw(self._handle, program._name, mesh._handle, layout, len(layout), _State(*state)))
-
-    def read_bytes(self) -> np.ndarray:
-        """(h, w, 4) uint8, bottom row first: clamped to 0...1 and rounded by GL."""
-        pixels = np.empty((self.height, self.width, 4), np.uint8)
-        _done(_library.hn_target_read_bytes(self._handle, pixels.ctypes.data))
-        return pixels
-
-    def read_floats(self) -> np.ndarray:
-        """(h, w, 4) float32, bottom row first: as drawn."""
-        pixels = np.empty((self.height, self.width, 4), np.float32)
-        _done(_library.hn_target_read_floats(self._handle, pixels.ctypes.data))
-        return pixels
-
-    def __del__(self):
-        if getattr(self, "_handle", None):
-            _library.hn_target_delete(self._handle)
+from .drawing import (  # noqa: E402, I001 (it needs what is above)
+    Attribute as Attribute,
+    Buffer as Buffer,
+    Call as Call,
+    Field as Field,
+    Mesh as Mesh,
+    Sampling as Sampling,
+    State as State,
+    Stencil as Stencil,
+    Target as Target,
+    Texture as Texture,
+    bind_image as bind_image,
+    bind_texture as bind_texture,
+    dispatch as dispatch,
+)

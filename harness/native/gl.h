@@ -17,8 +17,12 @@
     X(PFNGLBINDRENDERBUFFERPROC, BindRenderbuffer)               \
     X(PFNGLBINDTEXTUREPROC, BindTexture)                         \
     X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                 \
+    X(PFNGLBLENDCOLORPROC, BlendColor)                           \
+    X(PFNGLBLENDEQUATIONSEPARATEPROC, BlendEquationSeparate)     \
+    X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)             \
     X(PFNGLBUFFERDATAPROC, BufferData)                           \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
+    X(PFNGLCLEARBUFFERFIPROC, ClearBufferfi)                     \
     X(PFNGLCLEARBUFFERFVPROC, ClearBufferfv)                     \
     X(PFNGLCOLORMASKPROC, ColorMask)                             \
     X(PFNGLCOMPILESHADERPROC, CompileShader)                     \
@@ -36,8 +40,10 @@
     X(PFNGLDEPTHMASKPROC, DepthMask)                             \
     X(PFNGLDISABLEPROC, Disable)                                 \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
+    X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)         \
     X(PFNGLDRAWBUFFERSPROC, DrawBuffers)                         \
     X(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
+    X(PFNGLDRAWELEMENTSINSTANCEDPROC, DrawElementsInstanced)     \
     X(PFNGLENABLEPROC, Enable)                                   \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
     X(PFNGLFINISHPROC, Finish)                                   \
@@ -46,11 +52,11 @@
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
     X(PFNGLFRONTFACEPROC, FrontFace)                             \
     X(PFNGLGENBUFFERSPROC, GenBuffers)                           \
-    X(PFNGLGENERATEMIPMAPPROC, GenerateMipmap)                   \
     X(PFNGLGENFRAMEBUFFERSPROC, GenFramebuffers)                 \
     X(PFNGLGENRENDERBUFFERSPROC, GenRenderbuffers)               \
     X(PFNGLGENTEXTURESPROC, GenTextures)                         \
     X(PFNGLGENVERTEXARRAYSPROC, GenVertexArrays)                 \
+    X(PFNGLGENERATEMIPMAPPROC, GenerateMipmap)                   \
     X(PFNGLGETACTIVEATTRIBPROC, GetActiveAttrib)                 \
     X(PFNGLGETACTIVEUNIFORMPROC, GetActiveUniform)               \
     X(PFNGLGETATTRIBLOCATIONPROC, GetAttribLocation)             \
@@ -63,18 +69,24 @@
     X(PFNGLGETSHADERIVPROC, GetShaderiv)                         \
     X(PFNGLGETSTRINGPROC, GetString)                             \
     X(PFNGLGETSTRINGIPROC, GetStringi)                           \
+    X(PFNGLGETTEXIMAGEPROC, GetTexImage)                         \
     X(PFNGLGETUNIFORMLOCATIONPROC, GetUniformLocation)           \
     X(PFNGLGETUNIFORMFVPROC, GetUniformfv)                       \
     X(PFNGLGETUNIFORMIVPROC, GetUniformiv)                       \
     X(PFNGLGETUNIFORMUIVPROC, GetUniformuiv)                     \
     X(PFNGLLINKPROGRAMPROC, LinkProgram)                         \
     X(PFNGLPIXELSTOREIPROC, PixelStorei)                         \
+    X(PFNGLPOLYGONMODEPROC, PolygonMode)                         \
     X(PFNGLREADBUFFERPROC, ReadBuffer)                           \
     X(PFNGLREADPIXELSPROC, ReadPixels)                           \
     X(PFNGLRENDERBUFFERSTORAGEPROC, RenderbufferStorage)         \
     X(PFNGLSHADERSOURCEPROC, ShaderSource)                       \
+    X(PFNGLSTENCILFUNCSEPARATEPROC, StencilFuncSeparate)         \
+    X(PFNGLSTENCILMASKPROC, StencilMask)                         \
+    X(PFNGLSTENCILOPSEPARATEPROC, StencilOpSeparate)             \
     X(PFNGLTEXBUFFERPROC, TexBuffer)                             \
     X(PFNGLTEXIMAGE2DPROC, TexImage2D)                           \
+    X(PFNGLTEXIMAGE3DPROC, TexImage3D)                           \
     X(PFNGLTEXPARAMETERIPROC, TexParameteri)                     \
     X(PFNGLUNIFORM1FVPROC, Uniform1fv)                           \
     X(PFNGLUNIFORM1IPROC, Uniform1i)                             \
@@ -99,14 +111,17 @@
     X(PFNGLUNIFORMMATRIX4X2FVPROC, UniformMatrix4x2fv)           \
     X(PFNGLUNIFORMMATRIX4X3FVPROC, UniformMatrix4x3fv)           \
     X(PFNGLUSEPROGRAMPROC, UseProgram)                           \
+    X(PFNGLVERTEXATTRIBDIVISORPROC, VertexAttribDivisor)         \
     X(PFNGLVERTEXATTRIBPOINTERPROC, VertexAttribPointer)         \
     X(PFNGLVIEWPORTPROC, Viewport)
 
-/* From GL 4.3 on: NULL in an older context. */
-#define HN_GL_43(X)                              \
-    X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)   \
-    X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute) \
-    X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)
+/* In GL 4.3, some of them earlier: NULL in a context of less. */
+#define HN_GL_43(X)                                \
+    X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)     \
+    X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture) \
+    X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)   \
+    X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)       \
+    X(PFNGLPATCHPARAMETERIPROC, PatchParameteri)
 
 #define HN_GL_MEMBER(type, name) type name;
 typedef struct {

@@ -47,12 +47,20 @@ static int describe(const char *operation, hn_stage stage, const char *text, tar
     initialized = 1;
     if (!text)
         return hn_fail("%s: no text", operation);
-    if (stage != HN_VERTEX && stage != HN_FRAGMENT)
+    if (stage < HN_VERTEX || stage >= HN_STAGES)
         return hn_fail("%s: no stage %d", operation, (int)stage);
+    static const glslang_stage_t stages[] = {
+        [HN_VERTEX] = GLSLANG_STAGE_VERTEX,
+        [HN_FRAGMENT] = GLSLANG_STAGE_FRAGMENT,
+        [HN_GEOMETRY] = GLSLANG_STAGE_GEOMETRY,
+        [HN_TESS_CONTROL] = GLSLANG_STAGE_TESSCONTROL,
+        [HN_TESS_EVALUATION] = GLSLANG_STAGE_TESSEVALUATION,
+        [HN_COMPUTE] = GLSLANG_STAGE_COMPUTE,
+    };
 
     *input = (glslang_input_t){
         .language = GLSLANG_SOURCE_GLSL,
-        .stage = stage == HN_VERTEX ? GLSLANG_STAGE_VERTEX : GLSLANG_STAGE_FRAGMENT,
+        .stage = stages[stage],
         .client = client(rules),
         .client_version = rules == FOR_VULKAN ? GLSLANG_TARGET_VULKAN_1_0 : GLSLANG_TARGET_OPENGL_450,
         .target_language = rules == FOR_DRIVER ? GLSLANG_TARGET_NONE : GLSLANG_TARGET_SPV,

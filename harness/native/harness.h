@@ -52,7 +52,15 @@ int hn_context_take_error(void);
 
 /* ---- GLSL through glslang (glslang.c); needs no context ------------------------------------------------ */
 
-typedef enum { HN_VERTEX = 0, HN_FRAGMENT = 1 } hn_stage;
+typedef enum {
+    HN_VERTEX,
+    HN_FRAGMENT,
+    HN_GEOMETRY,
+    HN_TESS_CONTROL,
+    HN_TESS_EVALUATION,
+    HN_COMPUTE,
+    HN_STAGES /* how many there are */
+} hn_stage;
 
 /* Checks one stage by glslang's OpenGL rules, all its errors at once. Returns -1 with glslang's own lines
  * ("ERROR: 0:LINE: ...") in hn_error(). `spirv` != 0 also generates SPIR-V, as SHADERed's check does (its
@@ -76,6 +84,9 @@ int hn_glsl_spirv_vulkan(hn_stage stage, const char *text, uint32_t **words, siz
 /* Compiles and links with the driver. On failure hn_error() is "vertex: LOG", "fragment: LOG" or "link: LOG"
  * with the driver's log, unedited. */
 uint32_t hn_program_create(const char *vertex, const char *fragment);
+/* The same of the stages that have a text, indexed by hn_stage; the others are NULL. The names in messages are those
+ * of the enumeration: "geometry: LOG", "tess_control: LOG", ... */
+uint32_t hn_program_create_stages(const char *const texts[HN_STAGES]);
 /* Of one compute stage, where hn_compute_available(). On failure hn_error() is "compute: LOG" or "link: LOG". */
 uint32_t hn_program_create_compute(const char *compute);
 void hn_program_delete(uint32_t program);
@@ -148,13 +159,14 @@ typedef struct {
     float position[3], normal[3], texcoord[2], tangent[3], bitangent[3], color[4];
 } hn_vertex;
 
-/* The fields of hn_vertex, for layouts. */
+/* The fields of hn_vertex. */
 typedef enum { HN_POSITION, HN_NORMAL, HN_TEXCOORD, HN_TANGENT, HN_BITANGENT, HN_COLOR } hn_field;
 
 typedef struct hn_mesh hn_mesh;
 
 /* All meshes of a model file in node order, in mesh-local coordinates (node transforms and materials
- * ignored), read by Assimp with Triangulate and FlipUVs and nothing else, as SHADERed does. */
+ * ignored), read by Assimp with Triangulate and FlipUVs and nothing else, as SHADERed does. Points and lines
+ * of the file go where triangles are expected, as in SHADERed; hn_mesh_stray_faces() counts them. */
 hn_mesh *hn_mesh_load(const char *path);
 /* A mesh from vertices; `indices` may be NULL for vertices in order. */
 hn_mesh *hn_mesh_create(const hn_vertex *vertices, size_t n_vertices, const uint32_t *indices,
@@ -164,43 +176,117 @@ void hn_mesh_delete(hn_mesh *mesh);
 uint32_t hn_mesh_fields(const hn_mesh *mesh);
 size_t hn_mesh_vertex_count(const hn_mesh *mesh);
 size_t hn_mesh_index_count(const hn_mesh *mesh);
+size_t hn_mesh_stray_faces(const hn_mesh *mesh);
+
+/* ---- Buffers (buffer.c) -------------------------------------------------------------------------------- */
+
+/* Memory of the driver's for vertices and for storage blocks; `data` may be NULL for zeros. */
+uint32_t hn_buffer_create(size_t size, const void *data);
+void hn_buffer_delete(uint32_t buffer);
+/* Makes it the shader storage buffer of that binding; 0 unbinds. Needs GL 4.3. */
+int hn_buffer_bind(int binding, uint32_t buffer);
+int hn_buffer_read(uint32_t buffer, size_t size, void *data);
+/* Runs a compute program over that many groups and waits until what it wrote can be read by anything. */
+int hn_dispatch(uint32_t program, uint32_t x, uint32_t y, uint32_t z);
 
 /* ---- Textures (texture.c) ------------------------------------------------------------------------------ */
 
-/* A texture of RGBA texels in one of GL's formats, mipmaps made but for integers: GL_RGBA8
- * (from 4 bytes a texel), GL_RGBA32F, GL_RGBA32I and GL_RGBA32UI (from 16). */
-uint32_t hn_texture_create_as(uint32_t format, int width, int height, const void *texels, uint32_t min_filter,
-                              uint32_t mag_filter, uint32_t wrap_s, uint32_t wrap_t);
-/* An 8-bit RGBA texture without colour conversion, mipmaps made; `wrap` and filters are GL's. */
-uint32_t hn_texture_create(int width, int height, const uint8_t *rgba, uint32_t min_filter,
-                           uint32_t mag_filter, uint32_t wrap_s, uint32_t wrap_t);
-void hn_texture_delete(uint32_t texture);
-int hn_texture_bind(int unit, uint32_t texture);
+typedef struct {
+    uint32_t min_filter, mag_filter, wrap_s, wrap_t, wrap_r; /* GL's; wrap_r is for those with a depth */
+} hn_sampling;
 
-/* ---- Targets and draws (draw.c) ------------------------------------------------------------------------ */
+/* An 8-bit RGBA texture without colour conversion, mipmaps made. `depth` 0 is a 2D texture, else a 3D one. */
+uint32_t hn_texture_create(int width, int height, int depth, const uint8_t *rgba,
+                           const hn_sampling *sampling);
+/* A 2D texture of RGBA texels in one of GL's formats, mipmaps made but for integers: GL_RGBA8 (from 4 bytes a texel),
+ * GL_RGBA32F, GL_RGBA32I and GL_RGBA32UI (from 16). */
+uint32_t hn_texture_create_as(uint32_t format, int width, int height, const void *texels,
+                              const hn_sampling *sampling);
+/* A cube map of 8-bit RGBA without mipmaps: faces +x -x +y -y +z -z, each width x height, one after the other. */
+uint32_t hn_texture_create_cube(int width, int height, const uint8_t *rgba, const hn_sampling *sampling);
+/* A texture of GL's internal `format`, all 0, without mipmaps. `depth` as above. */
+uint32_t hn_texture_create_empty(int width, int height, int depth, uint32_t format,
+                                 const hn_sampling *sampling);
+void hn_texture_delete(uint32_t texture);
+/* `target` is GL_TEXTURE_2D, GL_TEXTURE_3D or GL_TEXTURE_CUBE_MAP. */
+int hn_texture_bind(int unit, uint32_t target, uint32_t texture);
+/* Binds a texture to an image unit, for reading and writing by any stage; all layers of one with a depth. Needs
+ * GL 4.2. */
+int hn_image_bind(int unit, uint32_t texture, uint32_t format, int layered);
+/* Reads all of it: width * height * max(depth, 1) * 4 floats. */
+int hn_texture_read(uint32_t target, uint32_t texture, float *rgba);
+
+/* ---- Targets (target.c) -------------------------------------------------------------------------------- */
 
 typedef struct hn_target hn_target;
 
-/* A framebuffer as SHADERed's window has it: 32-bit float RGB (RGBA when `alpha`), 24-bit depth. It starts
- * as 0 and at the farthest depth. */
-hn_target *hn_target_create(int width, int height, int alpha);
+/* Something to draw to: a colour texture of GL's internal `format`, with 24 bits of depth and 8 of stencil. All
+ * starts as 0, the depth too: in front of everything, until it is cleared. Where the driver cannot draw to
+ * GL_RGB32F, it is GL_RGBA32F and reads as if it had no alpha. */
+hn_target *hn_target_create(int width, int height, uint32_t format);
+/* Several targets as one: fragment output i goes to targets[i]; depth and stencil are those of the last. Draws
+ * fill `width` x `height`. The targets must live longer than it. */
+hn_target *hn_target_join(hn_target *const *targets, int n_targets, int width, int height);
 void hn_target_delete(hn_target *target);
-int hn_target_clear(hn_target *target, const float rgba[4]);
-/* What a draw does with the faces that it meets. */
-typedef struct {
-    uint32_t cull;   /* GL_NONE, GL_BACK or GL_FRONT: the faces that are left out */
-    uint32_t front;  /* GL_CCW or GL_CW: how a front face's vertices go round */
-    int depth_clamp; /* 1: what lies before the near or beyond the far plane is drawn too */
-} hn_state;
-
-/* Draws a mesh as triangles; attribute location k reads fields[k]. Depth test LESS, no blending. `state` NULL is the
- * state at the start of a pass of SHADERed's: back faces culled, counter-clockwise is front, no depth clamp. */
-int hn_draw(hn_target *target, uint32_t program, const hn_mesh *mesh, const hn_field *fields, int n_fields,
-            const hn_state *state);
-/* Reads the colour: width * height * 4 values, bottom row first; alpha is 1 without an alpha channel.
- * The bytes are clamped to 0...1 and rounded by GL; the floats are as drawn. */
+/* The colour as a texture, GL_TEXTURE_2D, linearly filtered and repeated; 0 of joined targets. It is the target's. */
+uint32_t hn_target_texture(const hn_target *target);
+int hn_target_clear_color(hn_target *target, int index, const float rgba[4]);
+/* Depth to the farthest unless `write_depth` is 0, and stencil to 0. */
+int hn_target_clear_depth(hn_target *target, int write_depth);
+/* Reads the colour of a target, or of the first of joined ones: width * height * 4 values, bottom row first; alpha is
+ * 1 without an alpha channel. The bytes are clamped to 0...1 and rounded by GL; the floats are as drawn. */
 int hn_target_read_bytes(hn_target *target, uint8_t *rgba);
 int hn_target_read_floats(hn_target *target, float *rgba);
+
+/* ---- Draws (draw.c) ------------------------------------------------------------------------------------ */
+
+/* What an attribute location reads. */
+typedef struct {
+    uint32_t buffer; /* 0: the vertices of the mesh, from the first of each of its parts */
+    uint32_t type;   /* GL_FLOAT, GL_INT or GL_BYTE; integers become floats */
+    int32_t components, stride;
+    uint64_t offset;
+    uint32_t divisor; /* 1: one value an instance */
+} hn_attribute;
+
+/* One side of the stencil test. */
+typedef struct {
+    uint32_t function, fail, depth_fail, pass; /* GL_EQUAL, ...; GL_KEEP, ... */
+} hn_stencil;
+
+/* What a draw does with the faces and the fragments that it meets; everything by GL's names. */
+typedef struct {
+    uint32_t fill;       /* GL_FILL or GL_LINE */
+    uint32_t cull;       /* GL_NONE, GL_BACK or GL_FRONT: the faces that are left out */
+    uint32_t front;      /* GL_CCW or GL_CW: how a front face's vertices go round */
+    int32_t depth_clamp; /* 1: what lies before the near or beyond the far plane is drawn too */
+    int32_t depth_test, depth_write;
+    uint32_t depth_function;
+    int32_t blend;
+    uint32_t blend_functions[2]; /* of colour and of alpha */
+    uint32_t blend_factors[4];   /* source and destination of colour, source and destination of alpha */
+    float blend_color[4];
+    int32_t stencil_test;
+    int32_t stencil_reference;
+    uint32_t stencil_read_mask, stencil_write_mask;
+    hn_stencil stencil_front, stencil_back;
+} hn_state;
+
+typedef struct {
+    uint32_t program;
+    const hn_mesh *mesh; /* NULL: n_vertices vertices, all of buffers */
+    int32_t n_vertices;
+    uint32_t topology; /* GL_TRIANGLES, ... */
+    const hn_attribute *attributes;
+    int32_t n_attributes;
+    int32_t instanced, instances; /* an instanced draw may have no instances */
+    int32_t patch_vertices;       /* of GL_PATCHES */
+    const hn_state
+        *state; /* NULL: the state at the start of a pass of SHADERed's: back faces culled, depth LESS */
+} hn_call;
+
+/* Draws. GL's own refusals (a geometry stage that wants other primitives, say) fail with GL's error. */
+int hn_draw(hn_target *target, const hn_call *call);
 
 #if defined(__GNUC__)
 #pragma GCC visibility pop

@@ -55,11 +55,18 @@ typedef struct {
 int hn_inputs_bind(hn_bound_inputs *bound, uint32_t program, const hn_input *inputs, int n_inputs);
 void hn_inputs_release(const hn_bound_inputs *bound);
 
+/* Makes the target the one that is drawn to and read from. */
+int hn_target_use(const char *operation, const hn_target *target);
+/* Whatever else could keep a pixel from being written. */
+void hn_write_everything(void);
+/* Width and height of what draws fill. */
+void hn_target_size(const hn_target *target, int *width, int *height);
+
 struct hn_mesh {
     uint32_t context_id;
     uint32_t vertex_buffer, index_buffer;
     uint32_t fields;
-    size_t n_vertices, n_indices;
+    size_t n_vertices, n_indices, n_stray_faces;
     size_t n_parts;
     hn_part *parts;
 };

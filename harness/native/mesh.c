@@ -1,4 +1,4 @@
-/* mesh.c: triangle meshes, from a model file through Assimp or from vertices at hand. */
+/* mesh.c: meshes, from a model file through Assimp or from vertices at hand. */
 #include "internal.h"
 
 #include <assimp/cimport.h>
@@ -56,8 +56,8 @@ hn_mesh *hn_mesh_create(const hn_vertex *vertices, size_t n_vertices, const uint
         return NULL;
     if (!indices)
         n_indices = n_vertices;
-    if (!vertices || n_vertices == 0 || n_indices == 0 || n_indices % 3 != 0) {
-        hn_fail("%s: %zu vertices and %zu indices make no triangles", operation, vertices ? n_vertices : 0,
+    if (!vertices || n_vertices == 0 || n_indices == 0) {
+        hn_fail("%s: %zu vertices and %zu indices make no mesh", operation, vertices ? n_vertices : 0,
                 n_indices);
         return NULL;
     }
@@ -113,14 +113,13 @@ static int count_part(mesh_builder *builder, const struct aiMesh *from) {
     hn_mesh *mesh = builder->mesh;
     size_t n_indices = 0;
     for (unsigned i = 0; i < from->mNumFaces; ++i) {
-        /* Triangulate leaves points and lines as they are; they are not drawn. */
-        if (from->mFaces[i].mNumIndices != 3)
-            continue;
-        for (unsigned k = 0; k < 3; ++k)
+        for (unsigned k = 0; k < from->mFaces[i].mNumIndices; ++k)
             if (from->mFaces[i].mIndices[k] >= from->mNumVertices)
                 return hn_fail("face %u has vertex %u of %u", i, from->mFaces[i].mIndices[k],
                                from->mNumVertices);
-        n_indices += 3;
+        /* Triangulate leaves points and lines as they are; SHADERed draws their vertices as triangles. */
+        mesh->n_stray_faces += from->mFaces[i].mNumIndices != 3;
+        n_indices += from->mFaces[i].mNumIndices;
     }
     if (n_indices > INT32_MAX || too_many(mesh->n_indices + n_indices, sizeof(uint32_t)) ||
         too_many(mesh->n_vertices + from->mNumVertices, sizeof(hn_vertex)))
@@ -163,9 +162,8 @@ static int copy_part(mesh_builder *builder, const struct aiMesh *from) {
                    sizeof to->color);
     }
     for (unsigned i = 0; i < from->mNumFaces; ++i)
-        if (from->mFaces[i].mNumIndices == 3)
-            for (unsigned k = 0; k < 3; ++k)
-                builder->indices[part->first_index + part->n_indices++] = from->mFaces[i].mIndices[k];
+        for (unsigned k = 0; k < from->mFaces[i].mNumIndices; ++k)
+            builder->indices[part->first_index + part->n_indices++] = from->mFaces[i].mIndices[k];
 
     mesh->n_vertices += part->n_vertices;
     mesh->n_indices += part->n_indices;
@@ -186,18 +184,20 @@ static hn_mesh *from_scene(const struct aiScene *scene) {
     if (walk(scene, scene->mRootNode, count_part, &builder))
         return NULL;
     if (counts.n_indices == 0) {
-        hn_fail(counts.n_parts == 0 ? "the file has no meshes" : "the file has no triangles");
+        hn_fail(counts.n_parts == 0 ? "the file has no meshes" : "the file has no faces");
         return NULL;
     }
     builder.mesh = new_mesh(counts.n_parts);
     builder.vertices = malloc(counts.n_vertices * sizeof *builder.vertices);
     builder.indices = malloc(counts.n_indices * sizeof *builder.indices);
     int failed = 1;
-    if (!builder.mesh || !builder.vertices || !builder.indices)
+    if (!builder.mesh || !builder.vertices || !builder.indices) {
         hn_fail("no memory for %zu vertices", counts.n_vertices);
-    else
+    } else {
+        builder.mesh->n_stray_faces = counts.n_stray_faces;
         failed = walk(scene, scene->mRootNode, copy_part, &builder) ||
                  upload_mesh("upload", builder.mesh, builder.vertices, builder.indices);
+    }
     free(builder.vertices);
     free(builder.indices);
     if (failed) {
@@ -252,4 +252,8 @@ size_t hn_mesh_vertex_count(const hn_mesh *mesh) {
 
 size_t hn_mesh_index_count(const hn_mesh *mesh) {
     return mesh ? mesh->n_indices : 0;
+}
+
+size_t hn_mesh_stray_faces(const hn_mesh *mesh) {
+    return mesh ? mesh->n_stray_faces : 0;
 }

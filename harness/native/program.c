@@ -45,6 +45,31 @@ static int link_program(GLuint program) {
     return 0;
 }
 
+static const struct {
+    GLenum type;
+    const char *name;
+} stages[HN_STAGES] = {
+    [HN_VERTEX] = {GL_VERTEX_SHADER, "vertex"},
+    [HN_FRAGMENT] = {GL_FRAGMENT_SHADER, "fragment"},
+    [HN_GEOMETRY] = {GL_GEOMETRY_SHADER, "geometry"},
+    [HN_TESS_CONTROL] = {GL_TESS_CONTROL_SHADER, "tess_control"},
+    [HN_TESS_EVALUATION] = {GL_TESS_EVALUATION_SHADER, "tess_evaluation"},
+    [HN_COMPUTE] = {GL_COMPUTE_SHADER, "compute"},
+};
+
+static uint32_t create(const char *operation, const char *const texts[HN_STAGES]) {
+    GLuint program = gl.CreateProgram();
+    int failed = 0;
+    for (int stage = 0; !failed && stage < HN_STAGES; ++stage)
+        if (texts[stage])
+            failed = attach(program, stages[stage].type, stages[stage].name, texts[stage]);
+    if (failed || link_program(program) || hn_check_gl("%s", operation)) {
+        gl.DeleteProgram(program);
+        return 0;
+    }
+    return program;
+}
+
 uint32_t hn_program_create(const char *vertex, const char *fragment) {
     const char *operation = "hn_program_create";
     if (hn_context_check(operation))
@@ -53,14 +78,26 @@ uint32_t hn_program_create(const char *vertex, const char *fragment) {
         hn_fail("%s: no %s text", operation, vertex ? "fragment" : "vertex");
         return 0;
     }
-    GLuint program = gl.CreateProgram();
-    if (attach(program, GL_VERTEX_SHADER, "vertex", vertex) ||
-        attach(program, GL_FRAGMENT_SHADER, "fragment", fragment) || link_program(program) ||
-        hn_check_gl("%s", operation)) {
-        gl.DeleteProgram(program);
+    const char *texts[HN_STAGES] = {[HN_VERTEX] = vertex, [HN_FRAGMENT] = fragment};
+    return create(operation, texts);
+}
+
+uint32_t hn_program_create_stages(const char *const texts[HN_STAGES]) {
+    const char *operation = "hn_program_create_stages";
+    if (hn_context_check(operation))
+        return 0;
+    if (!texts) {
+        hn_fail("%s: no texts", operation);
         return 0;
     }
-    return program;
+    /* Known here alone: GL 4.0 brought the one, 4.3 the other; we load what is newer than 3.3 together. */
+    if ((texts[HN_TESS_CONTROL] || texts[HN_TESS_EVALUATION] || texts[HN_COMPUTE]) &&
+        !hn_compute_available()) {
+        hn_fail("%s: this context has no %s stages", operation,
+                texts[HN_COMPUTE] ? "compute" : "tessellation");
+        return 0;
+    }
+    return create(operation, texts);
 }
 
 uint32_t hn_program_create_compute(const char *compute) {
@@ -71,13 +108,8 @@ uint32_t hn_program_create_compute(const char *compute) {
         hn_fail("%s: no %s", operation, compute ? "compute stage in this context" : "text");
         return 0;
     }
-    GLuint program = gl.CreateProgram();
-    if (attach(program, GL_COMPUTE_SHADER, "compute", compute) || link_program(program) ||
-        hn_check_gl("%s", operation)) {
-        gl.DeleteProgram(program);
-        return 0;
-    }
-    return program;
+    const char *texts[HN_STAGES] = {[HN_COMPUTE] = compute};
+    return create(operation, texts);
 }
 
 void hn_program_delete(uint32_t program) {

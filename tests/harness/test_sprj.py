@@ -1,40 +1,20 @@
-"""The reader of .sprj files. Expected values are the formulas and examples of SHADERed's own behaviour."""
+"""The reader of .sprj files: passes, names, what is left out and what is refused. Expected values are the formulas and
+examples of SHADERed's own behaviour."""
 
 from __future__ import annotations
 
 import pytest
-from sprj_files import QUAD_ITEM, line_of, shader_pass, write_project
+from sprj_files import item, line_of, read, refusal, shader_pass, variables, warned, write_project
 
 from harness import ProjectError, sprj
-from harness.project import VARIABLE_TYPES, ArcballCamera, FirstPersonCamera, Geometry, Model, RenderState
+from harness.project import ComputePass
+from harness.traps import Traps
 
-CUBE = '<item name="Box" type="geometry"><type>Cube</type></item>'
-
-
-def variables(*elements: str) -> str:
-    return "<variables>\n" + "\n".join(elements) + "\n</variables>"
-
-
-def row(*values: object) -> str:
-    return "<row>" + "".join(f"<value>{v}</value>" for v in values) + "</row>"
-
-
-def read_variable(folder, element: str):
-    return sprj.read(write_project(folder, shader_pass(extra=variables(element)))).passes[0].variables[0]
-
-
-def refusal(path) -> ProjectError:
-    with pytest.raises(ProjectError) as caught:
-        sprj.read(path)
-    assert caught.value.file == str(path)
-    return caught.value
-
-
-# ---- What is read -----------------------------------------------------------------------------------------
+COMPUTE = '<pass name="Fill" type="compute">{}<shader type="cs" path="c.comp" entry="main" /></pass>'
 
 
 def test_passes_keep_their_order(tmp_path):
-    project = sprj.read(write_project(tmp_path, shader_pass("First") + shader_pass("Second")))
+    project = read(write_project(tmp_path, shader_pass("First") + shader_pass("Second")))
     assert [p.name for p in project.passes] == ["First", "Second"]
 
 
@@ -52,8 +32,8 @@ def test_every_part_knows_its_line(tmp_path):
     objects = '<object type="texture" path="t.png">\n<bind slot="0" name="Quad" /></object>'
     settings = """<entry type="camera" fp="false"><distance>6</distance>
 <pitch>0</pitch><yaw>0</yaw><roll>0</roll></entry>"""
-    path = write_project(tmp_path, shader_pass(items=CUBE, extra=extra), objects=objects, settings=settings)
-    project = sprj.read(path)
+    path = write_project(tmp_path, shader_pass(items=item("Box"), extra=extra), objects=objects, settings=settings)
+    project = read(path)
     p = project.passes[0]
     assert {
         "pass": p.line,
@@ -80,316 +60,28 @@ def test_every_part_knows_its_line(tmp_path):
     }
 
 
-@pytest.mark.parametrize("name", VARIABLE_TYPES)
-def test_a_variable_without_rows_is_zero(tmp_path, name):
-    variable = read_variable(tmp_path, f'<variable type="{name}" name="v" />')
-    assert (variable.type.name, set(variable.value)) == (name, {0})
-
-
-@pytest.mark.parametrize(
-    "text, value",
-    [("0.7", 0.7), ("5e-1", 0.5), ("  0.75 ", 0.75), ("-.5", -0.5), ("+2.", 2.0), ("1E3", 1000.0)],
-)
-def test_floats(tmp_path, text, value):
-    assert read_variable(tmp_path, f'<variable type="float" name="v">{row(text)}</variable>').value == (value,)
-
-
-@pytest.mark.parametrize("text", ["", "0,5", "1.5f", "abc", "nan", "inf", "1e99", "1_0", "0x10", "1 2"])
-def test_what_is_no_float_is_an_error_in_its_line(tmp_path, text):
-    path = write_project(
-        tmp_path, shader_pass(extra=variables('<variable type="float" name="v">', row(text), "</variable>"))
-    )
-    error = refusal(path)
-    assert error.line == line_of(path, "<row>") and 'variable "v" of pass "Quad"' in error.message
-
-
-@pytest.mark.parametrize("text", ["", "1.5", "2147483648", "-99999999999999999999999", "0x10", "1e3"])
-def test_what_is_no_int_is_an_error(tmp_path, text):
-    error = refusal(
-        write_project(tmp_path, shader_pass(extra=variables(f'<variable type="int" name="v">{row(text)}</variable>')))
-    )
-    assert 'variable "v" of pass "Quad"' in error.message
-
-
-def test_truth_is_the_first_character(tmp_path):
-    element = f'<variable type="bool4" name="v">{row("1", "Yes", "True", "no")}</variable>'
-    assert read_variable(tmp_path, element).value == (True, True, True, False)
-
-
-def test_a_row_of_a_matrix_is_a_glsl_column(tmp_path):
-    # GLSL's m[0] is (1, 2), the first row of the file, and column by column is the order of upload.
-    element = f'<variable type="float2x2" name="m">{row(1, 2)}{row(3, 4)}</variable>'
-    assert read_variable(tmp_path, element).value == (1, 2, 3, 4)
-
-
-def test_a_value_outside_a_row_is_not_read(tmp_path):
-    assert read_variable(tmp_path, '<variable type="float" name="v"><value>3</value></variable>').value == (0,)
-
-
-def test_more_values_than_the_type_has_are_an_error(tmp_path):
-    path = write_project(
-        tmp_path, shader_pass(extra=variables(f'<variable type="float2" name="v">{row(1, 2, 3)}</variable>'))
-    )
-    assert "more values than a float2" in refusal(path).message
-
-
-def test_a_system_value_of_another_type_is_the_constant_zero(tmp_path):
-    variable = read_variable(tmp_path, '<variable type="float" name="v" system="CameraPosition3" />')
-    assert (variable.system, variable.value) == (None, (0,))
-
-
-def test_item_values_for_what_is_not_in_the_pass_are_left_out(tmp_path):
-    extra = (
-        variables('<variable type="float" name="v" />', '<variable type="float" name="t" system="Time" />')
-        + f"""<itemvalues><value variable="nothing" for="QuadItem">{row(1)}</value>
-<value variable="v" for="Nobody">{row(1)}</value>
-<value variable="t" for="QuadItem">{row(1)}</value>
-<value variable="v" for="QuadItem">{row(4)}</value></itemvalues>"""
-    )
-    found = sprj.read(write_project(tmp_path, shader_pass(extra=extra))).passes[0].item_values
-    assert [(v.variable.name, v.item, v.value) for v in found] == [("v", "QuadItem", (4,))]
-
-
-def test_only_active_macros_are_read(tmp_path):
-    extra = """<macros><define name="A" active="true">1</define><define name="B" active="false">2</define>
-<define name="C">vec3(1.0)</define><define name="D" active="true"></define>
-<define name="F(x)">(x)</define></macros>"""
-    macros = sprj.read(write_project(tmp_path, shader_pass(extra=extra))).passes[0].macros
-    assert [(m.name, m.value) for m in macros] == [("A", "1"), ("C", "vec3(1.0)"), ("D", ""), ("F(x)", "(x)")]
-
-
 @pytest.mark.parametrize("extra", ["", "<inputlayout />"])
 def test_the_default_layout(tmp_path, extra):
-    layout = sprj.read(write_project(tmp_path, shader_pass(extra=extra))).passes[0].layout
+    layout = read(write_project(tmp_path, shader_pass(extra=extra))).passes[0].layout
     assert layout == ("Position", "Normal", "Texcoord")
 
 
-def test_an_item_without_tags_has_the_defaults(tmp_path):
-    item = sprj.read(write_project(tmp_path, shader_pass(items='<item name="I" type="geometry" />'))).passes[0].items[0]
-    assert item == Geometry(
-        name="I",
-        state=RenderState(),
-        position=(0, 0, 0),
-        rotation=(0, 0, 0),
-        scale=(1, 1, 1),
-        line=item.line,
-        shape="Cube",
-        size=(1, 1, 1),
-    )
-
-
-def test_a_render_state_holds_for_the_items_after_it(tmp_path):
-    items = (
-        '<item name="A" type="geometry" /><item name="S" type="renderstate"><cull>false</cull></item>'
-        '<item name="B" type="geometry" /><item name="C" type="geometry" />'
-    )
-    states = [i.state for i in sprj.read(write_project(tmp_path, shader_pass(items=items))).passes[0].items]
-    assert states == [RenderState(), *[RenderState(cull=False, depth_clamp=True)] * 2]
-
-
-def test_a_render_state_forgets_the_one_before(tmp_path):
-    """What it leaves out takes SHADERed's defaults: culling back, counter-clockwise, depth clamp on."""
-    items = (
-        '<item name="S" type="renderstate"><cullfront>true</cullfront><ccw>false</ccw></item>'
-        '<item name="T" type="renderstate" /><item name="B" type="geometry" />'
-    )
-    (item,) = sprj.read(write_project(tmp_path, shader_pass(items=items))).passes[0].items
-    assert item.state == RenderState(cull=True, cull_front=False, ccw=True, depth_clamp=True)
-
-
-def test_render_states_start_anew_in_each_pass(tmp_path):
-    first = shader_pass(
-        "First", items='<item name="S" type="renderstate"><cull>false</cull></item><item name="A" type="geometry" />'
-    )
-    second = shader_pass("Second", items='<item name="B" type="geometry" />')
-    project = sprj.read(write_project(tmp_path, first + second))
-    assert project.passes[1].items[0].state == RenderState()
-
-
-def test_pitch_yaw_and_roll_keep_their_axes(tmp_path):
-    items = """<item name="I" type="geometry"><type>Plane</type><roll>3</roll><yaw>2</yaw><pitch>1</pitch>
-<z>6</z><y>5</y><x>4</x><scaleZ>9</scaleZ><scaleY>8</scaleY><scaleX>7</scaleX></item>"""
-    item = sprj.read(write_project(tmp_path, shader_pass(items=items))).passes[0].items[0]
-    assert (item.rotation, item.position, item.scale) == ((1, 2, 3), (4, 5, 6), (7, 8, 9))
-
-
-def test_backslashes_in_paths_are_turned(tmp_path):
-    items = r'<item name="M" type="model"><filepath>models\a.glb</filepath></item>'
-    item = sprj.read(write_project(tmp_path, shader_pass(items=items))).passes[0].items[0]
-    assert isinstance(item, Model) and item.path == "models/a.glb"
-
-
-def test_white_space_belongs_to_a_path(tmp_path):
-    items = '<item name="M" type="model"><filepath> a.glb </filepath></item>'
-    assert sprj.read(write_project(tmp_path, shader_pass(items=items))).passes[0].items[0].path == " a.glb "
-
-
-def test_a_comment_ends_a_text(tmp_path):
-    items = '<item name="M" type="model"><filepath>a.glb<!-- old -->b.glb</filepath></item>'
-    assert sprj.read(write_project(tmp_path, shader_pass(items=items))).passes[0].items[0].path == "a.glb"
-
-
 def test_a_leading_slash_does_not_leave_the_folder(tmp_path):
-    project = sprj.read(write_project(tmp_path, shader_pass()))
+    project = read(write_project(tmp_path, shader_pass()))
     assert project.path("/a.png") == tmp_path / "a.png"
 
 
-def test_texture_defaults(tmp_path):
-    objects = '<object type="texture" path="t.png"><bind slot="3" name="Quad" /></object>'
-    (texture,) = sprj.read(write_project(tmp_path, shader_pass(), objects=objects)).textures
-    assert (texture.vflip, texture.min_filter, texture.mag_filter, texture.wrap_s, texture.wrap_t) == (
-        False,
-        "Linear",
-        "Nearest",
-        "Repeat",
-        "Repeat",
-    )
-
-
-def test_objects_that_no_drawn_pass_binds_are_left_out(tmp_path):
-    objects = """<object type="texture" path="t.png"><bind slot="0" name="Nobody" /></object>
-<object type="audio" path="s.ogg" /><object type="rendertexture" name="rt" rsize="1,1" />"""
-    assert sprj.read(write_project(tmp_path, shader_pass(), objects=objects)).textures == ()
-
-
-def test_default_settings(tmp_path):
-    settings = sprj.read(write_project(tmp_path, shader_pass())).settings
-    assert (settings.camera, settings.clear_color, settings.use_alpha) == (
-        ArcballCamera(4, 28, 317, 0),
-        (0, 0, 0, 0),
-        False,
-    )
-
-
-def test_include_dirs_end_with_the_project_folder(tmp_path):
-    settings = '<entry type="ipaths"><path>a</path><path>../b/</path></entry>'
-    project = sprj.read(write_project(tmp_path, shader_pass(), settings=settings))
-    assert project.include_dirs == [tmp_path / "a", tmp_path / "../b", tmp_path]
-
-
-def test_first_person_camera(tmp_path):
-    settings = """<entry type="camera" fp="true"><positionX>1</positionX>
-<positionY>2</positionY><positionZ>3</positionZ><yaw>40</yaw><pitch>5</pitch></entry>"""
-    path = write_project(tmp_path, shader_pass(), settings=settings)
-    assert sprj.read(path).settings.camera == FirstPersonCamera((1, 2, 3), 5, 40, line_of(path, '"camera"'))
-
-
 def test_inactive_passes_and_passes_without_items_are_left_out(tmp_path):
-    inactive = '<pass name="Off" active="false"><rendertexture name="gone" />' + CUBE + "</pass>"
+    inactive = '<pass name="Off" active="false"><rendertexture name="gone" />' + item("Box") + "</pass>"
     empty = '<pass name="Empty"><shader type="gs" used="true" path="x" entry="main" /><items /></pass>'
-    project = sprj.read(write_project(tmp_path, inactive + empty + shader_pass()))
+    project = read(write_project(tmp_path, inactive + empty + shader_pass()))
     assert [p.name for p in project.passes] == ["Quad"]
 
 
 def test_unknown_elements_are_ignored(tmp_path):
     extra = '<colour of="money" />'
-    project = sprj.read(write_project(tmp_path, shader_pass(extra=extra), rest="<!-- x --><plugindata /><other />"))
+    project = read(write_project(tmp_path, shader_pass(extra=extra), rest="<!-- x --><plugindata /><other />"))
     assert len(project.passes) == 1
-
-
-# ---- What is refused --------------------------------------------------------------------------------------
-
-OBJECT = '<object type="{}" name="o" path="o" {}><bind slot="0" name="Quad" /></object>'
-
-NOT_SUPPORTED = {
-    "compute pass": ({"passes": '<pass name="HERE" type="compute" />'}, '"HERE"'),
-    "audio pass": ({"passes": '<pass name="HERE" type="audio" />'}, '"HERE"'),
-    "plugin": ({"rest": '<plugins><entry name="HERE" ver="1" /></plugins>'}, '"HERE"'),
-    "geometry shader": ({"extra": '<shader type="gs" used="true" path="HERE" entry="main" />'}, '"gs"'),
-    "HLSL": ({"extra": '<shader type="ps" path="HERE.hlsl" entry="main" />'}, '"HERE.hlsl"'),
-    "Vulkan GLSL": ({"extra": '<shader type="ps" path="HERE.vk" entry="main" />'}, '"HERE.vk"'),
-    "several targets": ({"extra": "<rendertexture />\n<rendertexture /><!-- HERE -->"}, "<rendertexture>"),
-    "layout value": (
-        {"extra": '<inputlayout><item value="BufferFloat" /><!-- HERE --></inputlayout>'},
-        "BufferFloat",
-    ),
-    "function": (
-        {"extra": variables('<variable type="float" name="HERE" function="ScalarSin" />')},
-        "ScalarSin",
-    ),
-    "system value": (
-        {"extra": variables('<variable name="HERE" system="PluginVariable" />')},
-        "PluginVariable",
-    ),
-    "last frame": (
-        {"extra": variables('<variable type="float" name="HERE" system="Time" lastframe="true" />')},
-        "last frame",
-    ),
-    "inverted constant": (
-        {"extra": variables('<variable type="float4x4" name="HERE" invert="true" />')},
-        "inverting a constant",
-    ),
-    "render state": (
-        {"items": '<item name="S" type="renderstate"><depthtest name="HERE">false</depthtest></item>'},
-        "<depthtest>",
-    ),
-    "vertex buffer": ({"items": '<item name="HERE" type="vertexbuffer" />'}, '"vertexbuffer"'),
-    "instancing": (
-        {"items": '<item name="HERE" type="geometry"><instanced>true</instanced></item>'},
-        "<instanced>",
-    ),
-    "topology": (
-        {"items": '<item name="HERE" type="geometry"><topology>LineList</topology></item>'},
-        "LineList",
-    ),
-    "cube map": ({"objects": OBJECT.format("texture", 'cube="true" left="HERE"')}, 'cube="true"'),
-    "keyboard texture": (
-        {"objects": OBJECT.format("texture", 'keyboard_texture="true" left="HERE"')},
-        "keyboard",
-    ),
-    "bound render texture": ({"objects": OBJECT.format("rendertexture", 'rsize="HERE"')}, '"rendertexture"'),
-    "buffer": ({"objects": OBJECT.format("buffer", 'size="HERE"')}, '"buffer"'),
-    "image": ({"objects": OBJECT.format("image", 'width="HERE"')}, '"image"'),
-    "audio": ({"objects": OBJECT.format("audio", 'x="HERE"')}, '"audio"'),
-}
-
-
-@pytest.mark.parametrize("what", NOT_SUPPORTED)
-def test_what_is_not_supported_is_refused_by_name_and_line(tmp_path, what):
-    parts, word = NOT_SUPPORTED[what]
-    parts = dict(parts)
-    inner = {key: parts.pop(key) for key in ("items", "extra") if key in parts}
-    passes = parts.pop("passes", "") + shader_pass(**inner)
-    path = write_project(tmp_path, passes, **parts)
-    error = refusal(path)
-    assert "not supported" in error.message and word in error.message
-    assert error.line == line_of(path, "HERE")
-
-
-def test_a_render_texture_that_exists_is_not_supported(tmp_path):
-    objects = '<object type="rendertexture" name="rt" rsize="1,1" />'
-    path = write_project(tmp_path, shader_pass(extra='<rendertexture name="rt" />'), objects=objects)
-    error = refusal(path)
-    assert error.message == 'pass "Quad" draws to the render texture "rt": that is not supported'
-    assert error.line == line_of(path, "<rendertexture")
-
-
-def test_a_render_texture_that_does_not_exist(tmp_path):
-    error = refusal(write_project(tmp_path, shader_pass(extra='<rendertexture name="rt" />')))
-    assert error.message == 'pass "Quad" draws to the render texture "rt", which is not among the objects'
-
-
-def test_names_that_differ_in_case_only_are_both_named(tmp_path):
-    items = '<item name="Ball" type="geometry" />\n<item name="ball" type="geometry" />'
-    path = write_project(tmp_path, shader_pass(items=items))
-    error = refusal(path)
-    first = line_of(path, '"Ball"')
-    assert error.message == f'the name "ball" is taken: "Ball" of line {first}; case does not count'
-    assert error.line == line_of(path, '"ball"')
-
-
-def test_an_item_may_not_have_a_pass_s_name(tmp_path):
-    assert "is taken" in refusal(write_project(tmp_path, shader_pass(items=QUAD_ITEM.format(name="quad")))).message
-
-
-def test_a_model_with_two_layouts_is_refused(tmp_path):
-    model = '<item name="{}" type="model"><filepath>m.glb</filepath></item>'
-    layout = '<inputlayout><item value="Position" /></inputlayout>'
-    passes = shader_pass("A", items=model.format("MA")) + shader_pass("B", items=model.format("MB"), extra=layout)
-    path = write_project(tmp_path, passes)
-    error = refusal(path)
-    assert '"m.glb"' in error.message and '"A"' in error.message and '"B"' in error.message
-    assert error.line == line_of(path, '"MB"')
 
 
 @pytest.mark.parametrize("stage, name", [("vs", "vertex"), ("ps", "pixel")])
@@ -406,72 +98,6 @@ def test_the_entry_must_be_main(tmp_path):
     assert '"PS"' in error.message and '"main"' in error.message
 
 
-def test_a_macro_with_two_values(tmp_path):
-    extra = '<macros>\n<define name="N">1</define>\n<define name="N">2</define>\n</macros>'
-    path = write_project(tmp_path, shader_pass(extra=extra))
-    first = line_of(path, ">1</define>")
-    assert refusal(path).message == f'pass "Quad" defines the macro "N" twice, first in line {first}'
-
-
-def test_there_is_no_such_shape(tmp_path):
-    items = '<item name="I" type="geometry"><type>Teapot</type></item>'
-    assert refusal(write_project(tmp_path, shader_pass(items=items))).message.endswith('there is no shape "Teapot"')
-
-
-def test_two_objects_of_one_file(tmp_path):
-    objects = '<object type="texture" path="a/t.png" />\n<object type="texture" path="a\\t.png" />'
-    path = write_project(tmp_path, shader_pass(), objects=objects)
-    error = refusal(path)
-    assert '"a/t.png"' in error.message and f"line {line_of(path, 'a/t.png')}" in error.message
-    assert error.line == line_of(path, "a\\t.png")
-
-
-def test_two_textures_in_one_slot(tmp_path):
-    objects = OBJECT.format("texture", "") + OBJECT.format("texture", "").replace('path="o"', 'path="p"')
-    error = refusal(write_project(tmp_path, shader_pass(), objects=objects))
-    assert error.message == 'slot 0 of pass "Quad" has "o" already'
-
-
-def test_a_texture_bound_to_a_pass_twice(tmp_path):
-    objects = """<object type="texture" path="o">
-<bind slot="0" name="Quad" /><bind slot="1" name="Quad" /></object>"""
-    error = refusal(write_project(tmp_path, shader_pass(), objects=objects))
-    assert error.message.startswith('"o" is bound to pass "Quad" twice')
-
-
-@pytest.mark.parametrize("slot", ["-1", "one", "1.5"])
-def test_slots_that_are_none(tmp_path, slot):
-    objects = f'<object type="texture" path="o"><bind slot="{slot}" name="Quad" /></object>'
-    assert "slot" in refusal(write_project(tmp_path, shader_pass(), objects=objects)).message
-
-
-@pytest.mark.parametrize("attribute", ["min_filter", "mag_filter", "wrap_s", "wrap_t"])
-def test_filters_and_wraps_that_do_not_exist(tmp_path, attribute):
-    objects = OBJECT.format("texture", f'{attribute}="Cubic"')
-    error = refusal(write_project(tmp_path, shader_pass(), objects=objects))
-    assert error.message.startswith(f'{attribute} is "Cubic"; there are ')
-
-
-def test_a_camera_entry_must_be_complete(tmp_path):
-    settings = '<entry type="camera" fp="false"><distance>6</distance><pitch>0</pitch><yaw>0</yaw></entry>'
-    path = write_project(tmp_path, shader_pass(), settings=settings)
-    error = refusal(path)
-    assert "no <roll>" in error.message and error.line == line_of(path, '"camera"')
-
-
-@pytest.mark.parametrize(
-    "extra",
-    [
-        variables(f'<variable type="float" name="{"v" * 64}" />'),
-        f'<macros><define name="{"N" * 32}">1</define></macros>',
-        f'<macros><define name="N">{"1" * 512}</define></macros>',
-        f'<shader type="ps" path="{"p" * 512}" entry="main" />',
-    ],
-)
-def test_texts_that_overflow_shadered_s_buffers(tmp_path, extra):
-    assert "more than SHADERed can hold" in refusal(write_project(tmp_path, shader_pass(extra=extra))).message
-
-
 def test_version_3_is_refused(tmp_path):
     path = tmp_path / "project.sprj"
     path.write_text('<?xml version="1.0"?>\n<project version="3">\n</project>')
@@ -479,39 +105,179 @@ def test_version_3_is_refused(tmp_path):
     assert error.message.startswith("version 3 of the project format is not supported") and error.line == 2
 
 
-def test_version_1_is_refused(tmp_path):
-    path = tmp_path / "project.sprj"
-    path.write_text("<project />")
-    assert refusal(path).message.startswith("version 1 of the project format is not supported")
+# ---- Names ---------------------------------------------------------------------------------------------------
 
 
-def test_another_xml_file(tmp_path):
-    path = tmp_path / "project.sprj"
-    path.write_text("<svg />")
-    assert "<svg> is not a SHADERed project" in refusal(path).message
+def test_of_names_that_differ_in_case_only_the_second_is_dropped(tmp_path):
+    items = item("Ball", "<x>1</x>") + "\n" + item("ball", "<x>2</x>")
+    path = write_project(tmp_path, shader_pass(items=items))
+    project, warning = warned(path)
+    first = line_of(path, '"Ball"')
+    assert [i.name for i in project.passes[0].items] == ["Ball"]
+    assert warning.message == (
+        f'the name "ball" is taken: "Ball" of line {first}; case does not count, and SHADERed drops this item'
+    )
+    assert warning.line == line_of(path, '"ball"')
 
 
-def test_a_mismatched_tag_names_both_lines(tmp_path):
-    path = tmp_path / "project.sprj"
-    path.write_text('<project version="2">\n<items>\n<item />\n</item>\n</project>')
+def test_an_item_with_a_pass_s_name_is_dropped(tmp_path):
+    items = item("A") + item("quad")
+    project, _ = warned(write_project(tmp_path, shader_pass(items=items)))
+    assert [i.name for i in project.passes[0].items] == ["A"]
+
+
+def test_the_items_of_a_pass_that_is_dropped_go_to_the_first(tmp_path):
+    passes = shader_pass("P", items=item("A")) + shader_pass("P", items=item("B"), fragment="other.frag")
+    project, warning = warned(write_project(tmp_path, passes))
+    (p,) = project.passes
+    assert [i.name for i in p.items] == ["A", "B"] and p.fragment.path == "quad.frag"
+    assert "SHADERed drops this pass" in warning.message
+
+
+def test_the_items_of_a_pass_with_another_case_are_lost(tmp_path):
+    passes = shader_pass("P", items=item("A")) + shader_pass("p", items=item("B"))
+    project, _ = warned(write_project(tmp_path, passes))
+    assert [[i.name for i in p.items] for p in project.passes] == [["A"]]
+
+
+@pytest.mark.parametrize("what", ["pass", "item"])
+def test_what_has_no_name(tmp_path, what):
+    passes = shader_pass("") if what == "pass" else shader_pass(items=item(""))
+    assert refusal(write_project(tmp_path, passes)).message == f"a {what} without a name"
+
+
+def test_too_many_items(tmp_path, monkeypatch):
+    monkeypatch.setattr(sprj, "MOST_ITEMS", 2)
+    items = "".join(item(f"I{n}") for n in range(3))
+    assert "more than 2 items" in refusal(write_project(tmp_path, shader_pass(items=items))).message
+
+
+# ---- Stages, targets, layouts --------------------------------------------------------------------------------
+
+
+def stages(*extra: str) -> str:
+    return "\n".join(
+        f'<shader type="{e.split()[0]}" path="s.glsl" entry="main" {" ".join(e.split()[1:])} />' for e in extra
+    )
+
+
+def test_stages_that_are_used(tmp_path):
+    extra = stages('gs used="true"', 'tcs used="true"', 'tes used="true"')
+    (p,) = read(write_project(tmp_path, shader_pass(extra=extra).replace('active="true"', 'patchverts="4"'))).passes
+    assert {p.geometry.path, p.tess_control.path, p.tess_evaluation.path} == {"s.glsl"} and p.patch_vertices == 4
+
+
+def test_stages_that_are_not_used(tmp_path):
+    (p,) = read(write_project(tmp_path, shader_pass(extra=stages('gs used="false"', 'tcs used="false"')))).passes
+    assert (p.geometry, p.tess_control, p.patch_vertices) == (None, None, 0)
+
+
+def test_a_stage_that_does_not_say_so(tmp_path):
+    project, warning = warned(write_project(tmp_path, shader_pass(extra=stages("gs"))))
+    assert project.passes[0].geometry is None and 'it lacks used="true"' in warning.message
+
+
+@pytest.mark.parametrize("count, expected", [("0", 1), ("99", 32)])
+def test_patches_are_clamped(tmp_path, count, expected):
+    text = shader_pass(extra=stages('tcs used="true"', 'tes used="true"'))
+    project, warning = warned(write_project(tmp_path, text.replace('active="true"', f'patchverts="{count}"')))
+    assert project.passes[0].patch_vertices == expected and "patchverts" in warning.message
+
+
+def test_tessellation_needs_both_stages(tmp_path):
+    error = refusal(write_project(tmp_path, shader_pass(extra=stages('tcs used="true"'))))
+    assert "no tessellation evaluation shader" in error.message
+
+
+def test_too_many_targets(tmp_path):
+    error = refusal(write_project(tmp_path, shader_pass(extra="<rendertexture />" * 17)))
+    assert "17 targets; SHADERed can hold 16" in error.message
+
+
+@pytest.mark.parametrize("value", ["Binormal", "Nothing"])
+def test_a_layout_value_that_there_is_not_is_the_position(tmp_path, value):
+    extra = f'<inputlayout><item value="Normal" />\n<item value="{value}" /></inputlayout>'
+    path = write_project(tmp_path, shader_pass(extra=extra))
+    project, warning = warned(path)
+    assert project.passes[0].layout == ("Normal", "Position")
+    assert f'is "{value}", of which SHADERed makes Position' in warning.message
+    assert warning.line == line_of(path, value)
+
+
+def test_a_model_has_the_layout_of_the_last_pass(tmp_path):
+    model = "<filepath>m.glb</filepath>"
+    layout = '<inputlayout><item value="Color" /></inputlayout>'
+    passes = shader_pass("A", items=item("MA", model, kind="model"))
+    passes += shader_pass("B", items=item("MB", model, kind="model"), extra=layout)
+    project, warning = warned(write_project(tmp_path, passes))
+    assert project.model_layouts == {"m.glb": (("Color",), None)}
+    assert '"m.glb"' in warning.message and '"A"' in warning.message and '"B"' in warning.message
+
+
+@pytest.mark.parametrize("path", ["a.hlsl", "a.vk"])
+def test_other_languages_are_not_supported(tmp_path, path):
+    project_path = write_project(tmp_path, shader_pass(extra=f'\n<shader type="ps" path="{path}" entry="main" />'))
+    error = refusal(project_path)
+    assert f'"{path}" is not GLSL' in error.message and "not supported" in error.message
+    assert error.line == line_of(project_path, path)
+
+
+# ---- Other passes --------------------------------------------------------------------------------------------
+
+
+def test_a_compute_pass(tmp_path):
+    passes = COMPUTE.format('<groupsize x="4" z="2" />' + variables('<variable type="float" name="v" />'))
+    (p, _) = read(write_project(tmp_path, passes + shader_pass())).passes
+    assert isinstance(p, ComputePass)
+    assert (p.compute.path, p.groups, [v.name for v in p.variables]) == ("c.comp", (4, 1, 2), ["v"])
+
+
+def test_too_many_groups(tmp_path):
+    passes = COMPUTE.format('<groupsize x="65536" />')
+    assert "65536 work groups along x; at most 65535" in refusal(write_project(tmp_path, passes)).message
+
+
+@pytest.mark.parametrize("kind", ["audio", "plugin"])
+def test_passes_that_are_not_supported(tmp_path, kind):
+    path = write_project(tmp_path, f'\n<pass name="Other" type="{kind}" />' + shader_pass())
     error = refusal(path)
-    assert error.line == 4 and "<items> of line 2" in error.message
+    assert error.message == f'pass "Other": passes of type "{kind}" are not supported'
+    assert error.line == line_of(path, '"Other"')
 
 
-@pytest.mark.parametrize("data", [b"", b"not xml", b"<project>", b"<a/><b/>", b"\xff\xfe\x00", b"<a>&x;</a>"])
-def test_malformed_xml(tmp_path, data):
-    path = tmp_path / "project.sprj"
-    path.write_bytes(data)
-    assert refusal(path).message.startswith("malformed XML: ")
-
-
-def test_a_document_type_is_refused_before_its_entities(tmp_path):
-    entities = ['<!ENTITY a0 "x">'] + [f'<!ENTITY a{n} "{f"&a{n - 1};" * 10}">' for n in range(1, 12)]
-    path = tmp_path / "project.sprj"
-    path.write_text("<!DOCTYPE p [" + "".join(entities) + ']>\n<project version="2">&a11;</project>')
+def test_plugins_are_not_supported(tmp_path):
+    path = write_project(tmp_path, shader_pass(), rest='<plugins>\n<entry name="Extra" ver="1" /></plugins>')
     error = refusal(path)
-    assert error.line == 1 and "<!DOCTYPE>" in error.message
+    assert error.message == 'the plugin "Extra" is not supported' and error.line == line_of(path, '"Extra"')
 
 
-def test_a_project_that_is_not_there(tmp_path):
-    assert "cannot read the project" in refusal(tmp_path / "gone.sprj").message
+def test_keep_going_leaves_out_what_is_not_supported(tmp_path):
+    passes = '<pass name="Sound" type="audio" />' + shader_pass("Bad", fragment="a.hlsl") + shader_pass("Good")
+    path = write_project(
+        tmp_path, passes, objects='<object type="audio" path="a"><bind slot="0" name="Good" /></object>'
+    )
+    traps = Traps(keep_going=True)
+    project = sprj.read(path, traps)
+    assert [p.name for p in project.passes] == ["Good"] and project.objects == ()
+    assert len(traps.errors) == 3 and all(isinstance(e, ProjectError) and e.line for e in traps.errors)
+
+
+def test_keep_going_leaves_out_the_passes_of_a_render_texture_that_cannot_be(tmp_path):
+    passes = shader_pass("Bad", extra='<rendertexture name="rt" />') + shader_pass("Good")
+    objects = '<object type="rendertexture" name="rt" rsize="wide"><bind slot="0" name="Good" /></object>'
+    traps = Traps(keep_going=True)
+    project = sprj.read(write_project(tmp_path, passes, objects=objects), traps)
+    assert [p.name for p in project.passes] == ["Good"] and len(traps.errors) == 1
+
+
+def test_keep_going_does_not_make_a_project_of_what_is_none(tmp_path):
+    path = tmp_path / "project.sprj"
+    path.write_text("<project version='9' />")
+    with pytest.raises(ProjectError):
+        sprj.read(path, Traps(keep_going=True))
+
+
+def test_items_of_inactive_passes_have_places(tmp_path):
+    inactive = f'<pass name="Off" active="false"><items>{item("Lamp", "<x>3</x><yaw>1</yaw>")}</items></pass>'
+    places = read(write_project(tmp_path, inactive + shader_pass())).places
+    assert places["Lamp"] == ((3, 0, 0), (0, 1, 0), (1, 1, 1))

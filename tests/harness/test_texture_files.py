@@ -100,8 +100,25 @@ def test_a_file_that_is_no_image(tmp_path):
     assert "damaged or of a kind that is not supported" in refusal(path)
 
 
-def test_a_format_that_shadered_would_change(tmp_path):
-    assert "not supported" in refusal(saved(tmp_path, Image.new("P", (1, 1)), "t.gif"))
+def test_a_format_that_shadered_does_not_read(tmp_path):
+    assert "not supported" in refusal(saved(tmp_path, Image.new("RGB", (1, 1)), "t.tiff"))
+
+
+@pytest.mark.parametrize("name", ["t.gif", "t.ppm", "t.bmp", "t.tga"])
+def test_formats_that_keep_every_byte(tmp_path, name):
+    path = saved(tmp_path, Image.new("RGB", (1, 1), (255, 0, 51)), name)
+    np.testing.assert_array_equal(textures.read(path), [[[255, 0, 51, 255]]])
+
+
+def test_a_face_is_not_turned_over(tmp_path):
+    path = saved(tmp_path, Image.fromarray(TWO_ROWS))
+    np.testing.assert_array_equal(textures.read_face(path), TWO_ROWS)
+
+
+def test_a_face_of_gray_with_alpha_is_left_to_chance(tmp_path):
+    path = saved(tmp_path, Image.new("LA", (1, 1)))
+    with pytest.raises(textures.TextureError, match="whatever is in memory"):
+        textures.read_face(path)
 
 
 def test_a_truncated_file(tmp_path):

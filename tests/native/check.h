@@ -32,6 +32,11 @@ extern int n_passed, n_failed;
 /* A triangle over the whole of a target at this depth, counter-clockwise; texture coordinates 0 ... 1 across
  * the target. */
 hn_mesh *cover(float z);
+/* Sets the one colour and the depth of a target. */
+int clear(hn_target *target, const float rgba[4]);
+/* Draws a mesh as triangles; attribute location k reads fields[k]. */
+int draw_fields(hn_target *target, uint32_t program, const hn_mesh *mesh, const hn_field *fields,
+                int n_fields, const hn_state *state);
 /* Draws with a program that takes the position alone over a target of 1 x 1, and reads the pixel. */
 int draw_pixel(uint32_t program, float rgba[4]);
 
@@ -41,6 +46,8 @@ void test_program(void);
 void test_mesh(void);
 void test_texture(void);
 void test_draw(void);
+void test_target(void);
+void test_buffer(void);
 void test_evaluate(void);
 
 #endif

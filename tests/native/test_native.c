@@ -2,6 +2,7 @@
 #include "check.h"
 
 #include <dlfcn.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <threads.h>
 
@@ -15,11 +16,39 @@ hn_mesh *cover(float z) {
     return hn_mesh_create(vertices, 3, NULL, 0);
 }
 
+int clear(hn_target *target, const float rgba[4]) {
+    return hn_target_clear_color(target, 0, rgba) || hn_target_clear_depth(target, 1) ? -1 : 0;
+}
+
+int draw_fields(hn_target *target, uint32_t program, const hn_mesh *mesh, const hn_field *fields,
+                int n_fields, const hn_state *state) {
+    static const hn_attribute of[] = {
+        [HN_POSITION] = {0, GL_FLOAT, 3, sizeof(hn_vertex), offsetof(hn_vertex, position), 0},
+        [HN_NORMAL] = {0, GL_FLOAT, 3, sizeof(hn_vertex), offsetof(hn_vertex, normal), 0},
+        [HN_TEXCOORD] = {0, GL_FLOAT, 2, sizeof(hn_vertex), offsetof(hn_vertex, texcoord), 0},
+        [HN_TANGENT] = {0, GL_FLOAT, 3, sizeof(hn_vertex), offsetof(hn_vertex, tangent), 0},
+        [HN_BITANGENT] = {0, GL_FLOAT, 3, sizeof(hn_vertex), offsetof(hn_vertex, bitangent), 0},
+        [HN_COLOR] = {0, GL_FLOAT, 4, sizeof(hn_vertex), offsetof(hn_vertex, color), 0}};
+    hn_attribute attributes[8];
+    for (int i = 0; i < n_fields; ++i)
+        attributes[i] = of[fields[i]];
+    const hn_call call = {.program = program,
+                          .mesh = mesh,
+                          .topology = GL_TRIANGLES,
+                          .attributes = attributes,
+                          .n_attributes = n_fields,
+                          .state = state};
+    return hn_draw(target, &call);
+}
+
 int draw_pixel(uint32_t program, float rgba[4]) {
     const hn_field fields[] = {HN_POSITION};
-    hn_target *target = hn_target_create(1, 1, 1);
+    hn_target *target = hn_target_create(1, 1, GL_RGBA32F);
     hn_mesh *mesh = cover(0);
-    int result = target && mesh ? hn_draw(target, program, mesh, fields, 1, NULL) : -1;
+    const float black[4] = {0};
+    int result = target && mesh && clear(target, black) == 0
+                     ? draw_fields(target, program, mesh, fields, 1, NULL)
+                     : -1;
     if (result == 0)
         result = hn_target_read_floats(target, rgba);
     hn_mesh_delete(mesh);
@@ -46,15 +75,30 @@ static void test_no_context(void) {
     CHECK_FAILS(hn_evaluate_limit() == 0, reason);
     CHECK_FAILS(hn_mesh_create(triangle, 3, NULL, 0) == NULL, reason);
     CHECK_FAILS(hn_mesh_load("a.obj") == NULL, reason);
-    CHECK_FAILS(hn_texture_create(1, 1, pixel, GL_NEAREST, GL_NEAREST, GL_REPEAT, GL_REPEAT) == 0, reason);
-    CHECK_FAILS(hn_texture_bind(0, 0) == -1, reason);
-    CHECK_FAILS(hn_target_create(1, 1, 0) == NULL, reason);
-    CHECK_FAILS(hn_draw(NULL, 1, NULL, NULL, 0, NULL) == -1, reason);
-    CHECK_FAILS(hn_target_clear(NULL, black) == -1, reason);
+    const hn_sampling sampling = {GL_NEAREST, GL_NEAREST, GL_REPEAT, GL_REPEAT, GL_REPEAT};
+    const char *const no_texts[HN_STAGES] = {NULL};
+    float floats[4];
+    CHECK_FAILS(hn_program_create_stages(no_texts) == 0, reason);
+    CHECK_FAILS(hn_texture_create(1, 1, 0, pixel, &sampling) == 0, reason);
+    CHECK_FAILS(hn_texture_create_cube(1, 1, pixel, &sampling) == 0, reason);
+    CHECK_FAILS(hn_texture_create_empty(1, 1, 0, GL_RGBA8, &sampling) == 0, reason);
+    CHECK_FAILS(hn_texture_bind(0, GL_TEXTURE_2D, 0) == -1, reason);
+    CHECK_FAILS(hn_texture_read(GL_TEXTURE_2D, 0, floats) == -1, reason);
+    CHECK_FAILS(hn_image_bind(0, 0, GL_RGBA8, 0) == -1, reason);
+    CHECK_FAILS(hn_buffer_create(4, pixel) == 0, reason);
+    CHECK_FAILS(hn_buffer_bind(0, 0) == -1, reason);
+    CHECK_FAILS(hn_buffer_read(0, 4, floats) == -1, reason);
+    CHECK_FAILS(hn_dispatch(1, 1, 1, 1) == -1, reason);
+    CHECK_FAILS(hn_target_join(NULL, 0, 1, 1) == NULL, reason);
+    CHECK_FAILS(hn_target_create(1, 1, GL_RGB32F) == NULL, reason);
+    CHECK_FAILS(hn_draw(NULL, NULL) == -1, reason);
+    CHECK_FAILS(hn_target_clear_color(NULL, 0, black) == -1, reason);
+    CHECK_FAILS(hn_target_clear_depth(NULL, 1) == -1, reason);
     CHECK_FAILS(hn_target_read_bytes(NULL, NULL) == -1, reason);
     CHECK_FAILS(hn_target_read_floats(NULL, NULL) == -1, reason);
     hn_program_delete(0);
     hn_texture_delete(0);
+    hn_buffer_delete(0);
     hn_mesh_delete(NULL);
     hn_target_delete(NULL);
     hn_free(NULL);
@@ -89,23 +133,25 @@ static void test_open_and_close(void) {
 
     /* What a closed context leaves can be deleted, and is refused, not mistaken for the next context's. */
     hn_mesh *old_mesh = cover(0);
-    hn_target *old_target = hn_target_create(1, 1, 0);
+    hn_target *old_target = hn_target_create(1, 1, GL_RGB32F);
     hn_context_close();
     hn_context_close();
-    CHECK_FAILS(hn_target_create(1, 1, 0) == NULL, "no context");
+    CHECK_FAILS(hn_target_create(1, 1, GL_RGB32F) == NULL, "no context");
     CHECK(hn_context_open() == 0);
     hn_mesh *mesh = cover(0);
-    hn_target *target = hn_target_create(1, 1, 0);
+    hn_target *target = hn_target_create(1, 1, GL_RGB32F);
     uint32_t program = hn_program_create(
         POSITION_VERTEX, "#version 330\nout vec4 color;\nvoid main() { color = vec4(0.25); }\n");
     const hn_field fields[] = {HN_POSITION};
     const float black[4] = {0};
     float rgba[4];
-    CHECK_FAILS(hn_target_clear(old_target, black) == -1, "the target's context was closed");
-    CHECK_FAILS(hn_draw(target, program, old_mesh, fields, 1, NULL) == -1, "the mesh's context was closed");
+    CHECK_FAILS(hn_target_clear_color(old_target, 0, black) == -1, "the target's context was closed");
+    CHECK_FAILS(draw_fields(target, program, old_mesh, fields, 1, NULL) == -1,
+                "the mesh's context was closed");
     hn_mesh_delete(old_mesh);
     hn_target_delete(old_target);
-    CHECK(hn_draw(target, program, mesh, fields, 1, NULL) == 0);
+    CHECK(clear(target, black) == 0);
+    CHECK(draw_fields(target, program, mesh, fields, 1, NULL) == 0);
     CHECK(hn_target_read_floats(target, rgba) == 0 && rgba[0] == 0.25f);
     hn_mesh_delete(mesh);
     hn_target_delete(target);
@@ -115,7 +161,7 @@ static void test_open_and_close(void) {
 static int use_elsewhere(void *unused) {
     (void)unused;
     CHECK(hn_context_take_error() == 0);
-    CHECK_FAILS(!hn_target_create(1, 1, 0), "the context belongs to the thread that opened it");
+    CHECK_FAILS(!hn_target_create(1, 1, GL_RGB32F), "the context belongs to the thread that opened it");
     CHECK_FAILS(hn_context_open() == -1, "the context belongs to the thread that opened it");
     return 0;
 }
@@ -153,6 +199,8 @@ int main(int argc, char **argv) {
     test_mesh();
     test_evaluate(); /* before the draws: they must not see the state it sets */
     test_texture();
+    test_target();
+    test_buffer();
     test_draw();
     hn_context_close();
     printf("%d passed, %d failed\n", n_passed, n_failed);
