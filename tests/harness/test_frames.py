@@ -21,8 +21,9 @@ from sprj_files import (
     write_texture,
 )
 
-from harness import ProjectError
+from harness import ProjectError, buffers, sprj
 from harness.render import Renderer, render
+from harness.traps import Traps
 
 QUAD = "<type>ScreenQuadNDC</type>"
 ALPHA = '<entry type="usealpha" val="true" />'
@@ -535,7 +536,10 @@ def test_what_the_file_of_a_buffer_lacks_is_0(tmp_path):
     write_buffer(tmp_path, "b", 1)
     write_quad(tmp_path, "")
     objects = '<object type="buffer" name="b" size="8"><bind slot="0" name="Quad" /></object>'
-    _, (warning,) = drawn(write_project(tmp_path, shader_pass(), objects=objects))
+    path = write_project(tmp_path, shader_pass(), objects=objects)
+    _, (warning,) = drawn(path)
+    project = sprj.read(path)
+    assert buffers.content(project, project.buffers[0], Traps()) == np.float32(1).tobytes() + bytes(4)
     assert '"buffers/b.buf" has 4 of its 8 bytes' in warning
 
 
