@@ -62,6 +62,10 @@ class Source:
         file, number = self.origin(found[0][0])
         return GlslError("\n".join(shown).removeprefix(f"{file}:{number}: "), file, number)
 
+    def errors(self, log: str) -> list[tuple[int, str]]:
+        """Each error of that log by itself: (line of ``text``, what the compiler says), 0 for a linker's of no line."""
+        return list(_messages(log)) or [(0, log.strip())]
+
 
 def _messages(log: str) -> Iterator[tuple[int, str]]:
     """(line of the text, message) of each error in a log of glslang or of a driver, each once."""
