@@ -31,7 +31,9 @@ RULES: dict[str, Rule] = {
         "Names of passes and items must differ in more than case, in the whole project; SHADERed drops the second.",
     ),
     "HS003": Rule(_E, "a render texture does not exist", "SHADERed crashes."),
-    "HS004": Rule(_E, "SHADERed crashes on this", "It does not check what it reads, and the program ends or goes wild."),
+    "HS004": Rule(
+        _E, "SHADERed crashes on this", "It does not check what it reads, and the program ends or goes wild."
+    ),
     "HS005": Rule(
         _E, "an input layout value does not exist", "SHADERed takes Position for it, and the shader reads positions."
     ),
@@ -40,30 +42,40 @@ RULES: dict[str, Rule] = {
     ),
     "HS007": Rule(_W, "SHADERed passes over this in silence", "What it shows is not what the project says."),
     "HS008": Rule(
-        _W, "harness render cannot draw the project", "SHADERed may well; but pictures and tests of it are not to be had."
+        _W,
+        "harness render cannot draw the project",
+        "SHADERed may well; but pictures and tests of it are not to be had.",
     ),
     "HS009": Rule(
-        _W, "a path leads out of the project's folder", "The file is missing wherever the folder is copied or handed in."
+        _W,
+        "a path leads out of the project's folder",
+        "The file is missing wherever the folder is copied or handed in.",
     ),
     "HS010": Rule(
         _W,
         "a pass ends with depth writes off",
-        "SHADERed's next depth clear is masked: from frame 2 on the preview shows nothing new. --render does not show it.",
+        "SHADERed's next depth clear is masked: from frame 2 on the preview shows nothing new. --render does "
+        "not show it.",
     ),
     "HS011": Rule(_W, "the camera is not what is written", "SHADERed clamps or guesses it without a word."),
     "HS101": Rule(
-        _E, "a pass lacks a shader, or its file", "SHADERed skips the pass and its clearing; --render still exits with 0."
+        _E,
+        "a pass lacks a shader, or its file",
+        "SHADERed skips the pass and its clearing; --render still exits with 0.",
     ),
     "HS102": Rule(
         _E,
         "#version is not as it must be on line 1",
-        "SHADERed inserts macros behind the first line that holds these letters; above #version the driver refuses them.",
+        "SHADERed inserts macros behind the first line that holds these letters; above #version the driver "
+        "refuses them.",
     ),
     "HS103": Rule(
         _E, "glslang refuses the shader", "SHADERed checks every shader by glslang first, and skips the pass."
     ),
     "HS104": Rule(
-        _E, "the driver refuses the shader", "The text that glslang checked is not what draws: the driver gets the original."
+        _E,
+        "the driver refuses the shader",
+        "The text that glslang checked is not what draws: the driver gets the original.",
     ),
     "HS105": Rule(_E, "the stages do not link", "SHADERed never looks at the link status: nothing is drawn."),
     "HS106": Rule(
@@ -75,7 +87,8 @@ RULES: dict[str, Rule] = {
     "HS108": Rule(
         _E,
         "the two compilers find different files for an include",
-        "glslang also looks beside the shader and in another order; the driver's text is pasted from the include paths, "
+        "glslang also looks beside the shader and in another order; the driver's text is pasted from the "
+        "include paths, "
         "then the project's folder. What is checked is not what draws.",
     ),
     "HS109": Rule(
@@ -90,7 +103,9 @@ RULES: dict[str, Rule] = {
     ),
     "HS111": Rule(_E, "the entry is not main", "GLSL has no other: the stage links to nothing, and nothing is drawn."),
     "HS112": Rule(
-        _W, "the shader is not plain GLSL by its extension", "SHADERed takes it for HLSL or Vulkan GLSL; it is not checked."
+        _W,
+        "the shader is not plain GLSL by its extension",
+        "SHADERed takes it for HLSL or Vulkan GLSL; it is not checked.",
     ),
     "HS113": Rule(
         _E,
@@ -106,17 +121,19 @@ RULES: dict[str, Rule] = {
         "a uniform has no variable",
         "It is 0 in --render; the editor makes a variable for it and guesses a system value from its name.",
     ),
-    "HS203": Rule(_W, "a variable has no uniform", "It does nothing, and the editor deletes it when the project is saved."),
-    "HS204": Rule(
-        _N, "a variable's uniform is declared but not used", "It has no effect on the picture in this pass."
+    "HS203": Rule(
+        _W, "a variable has no uniform", "It does nothing, and the editor deletes it when the project is saved."
     ),
+    "HS204": Rule(_N, "a variable's uniform is declared but not used", "It has no effect on the picture in this pass."),
     "HS205": Rule(
         _W,
         "a system value or function does not fit the variable",
         "SHADERed ignores the attribute in silence: the variable is a constant, 0 without rows.",
     ),
     "HS206": Rule(
-        _W, "a uniform has an initialiser", "It holds in --render, but the editor sets the uniform to 0 without a variable."
+        _W,
+        "a uniform has an initialiser",
+        "It holds in --render, but the editor sets the uniform to 0 without a variable.",
     ),
     "HS207": Rule(_W, "two variables of one name", "The later wins; the first does nothing."),
     "HS208": Rule(
@@ -143,7 +160,8 @@ RULES: dict[str, Rule] = {
     "HS304": Rule(
         _E,
         "SHADERed's search does not find a sampler's declaration",
-        "It wants one declaration a line: uniform sampler2D name; with single spaces. The texture goes to another name.",
+        "It wants one declaration a line: uniform sampler2D name; with single spaces. The texture goes to "
+        "another name.",
     ),
     "HS305": Rule(
         _W,
@@ -155,12 +173,16 @@ RULES: dict[str, Rule] = {
         "a texture goes to a sampler with another role",
         "Textures go to samplers by the order of their slots and declarations; names do not matter to SHADERed.",
     ),
-    "HS307": Rule(_W, "a slot or an object is given twice", "Of two in a slot the last holds; a second object is merged."),
+    "HS307": Rule(
+        _W, "a slot or an object is given twice", "Of two in a slot the last holds; a second object is merged."
+    ),
     "HS308": Rule(_E, "a texture is not of its sampler's kind", "The sampler reads black."),
     "HS401": Rule(
         _E, "a texture file does not exist", "SHADERed logs it, and the pass's later textures move up into its slot."
     ),
-    "HS402": Rule(_E, "a texture file cannot be read", "SHADERed logs it, and the sampler reads black or another texture."),
+    "HS402": Rule(
+        _E, "a texture file cannot be read", "SHADERed logs it, and the sampler reads black or another texture."
+    ),
     "HS403": Rule(
         _W,
         "a texture is upside down for what it is on",
@@ -172,7 +194,9 @@ RULES: dict[str, Rule] = {
         "SHADERed converts nothing: light computed with stored values is too bright in the middle tones.",
     ),
     "HS405": Rule(
-        _W, "data are decoded as if they were colours", "Roughness, metalness and normals are stored linear: decoding bends them."
+        _W,
+        "data are decoded as if they were colours",
+        "Roughness, metalness and normals are stored linear: decoding bends them.",
     ),
     "HS406": Rule(_W, "colours are decoded from sRGB twice", "The picture is far too dark and too saturated."),
     "HS407": Rule(
@@ -184,7 +208,8 @@ RULES: dict[str, Rule] = {
     "HS502": Rule(
         _W,
         "a model lacks what the shader reads",
-        "SHADERed generates nothing: missing normals, tangents and texture coordinates are 0, and normalize() of 0 is NaN.",
+        "SHADERed generates nothing: missing normals, tangents and texture coordinates are 0, and normalize() "
+        "of 0 is NaN.",
     ),
     "HS503": Rule(
         _W,
@@ -192,7 +217,9 @@ RULES: dict[str, Rule] = {
         "SHADERed turns the tangents of its own shapes wherever the texture is mirrored: bumps look like dents there.",
     ),
     "HS504": Rule(
-        _E, "an attribute is beyond the input layout", "Nothing is bound to its location: it reads the constant 0, 0, 0, 1."
+        _E,
+        "an attribute is beyond the input layout",
+        "Nothing is bound to its location: it reads the constant 0, 0, 0, 1.",
     ),
     "HS505": Rule(
         _W,
@@ -205,18 +232,20 @@ RULES: dict[str, Rule] = {
         "SHADERed sets up a model file once: the layout of the last pass holds for all.",
     ),
     "HS507": Rule(
-        _W, "an attribute has no explicit location", "The driver chooses one; another driver, or version, chooses another."
+        _W,
+        "an attribute has no explicit location",
+        "The driver chooses one; another driver, or version, chooses another.",
     ),
     "HS508": Rule(
         _W,
         "a model has mirrored texture coordinates and the pass does not look at handedness",
         "Where the texture is mirrored the bitangent is -cross(n, t): bumps look like dents there.",
     ),
-    "HS601": Rule(
-        _W, "a map is the same everywhere", "The pass samples a texture for every pixel to read a constant."
-    ),
+    "HS601": Rule(_W, "a map is the same everywhere", "The pass samples a texture for every pixel to read a constant."),
     "HS602": Rule(
-        _W, "METALNESS could be fixed", "The metalness map says the same everywhere: the pass computes both kinds of material."
+        _W,
+        "METALNESS could be fixed",
+        "The metalness map says the same everywhere: the pass computes both kinds of material.",
     ),
     "HS603": Rule(_W, "a feature is compiled that nothing needs", "It costs time for every pixel and changes none."),
     "HS604": Rule(

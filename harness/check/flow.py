@@ -20,7 +20,8 @@ _DECODING = re.compile(r"(?:vec[34]\s*\(\s*)?(?:2\.[1-5]\d*|\w*gamma\w*)\s*\)?",
 _ENCODING = re.compile(r"(?:vec[34]\s*\(\s*)?(?:1\.?0*\s*/\s*(?:2\.[1-5]\d*|\w*gamma\w*)|0?\.4[0-9]\d*)\s*\)?", re.I)
 _DECODER_NAME = re.compile(r"srgb_?to|from_?srgb|to_?linear|linearize|degamma|decode_?(srgb|gamma|color|colour)", re.I)
 _ENCODER_NAME = re.compile(r"(to|encode)_?(srgb|gamma|display)|linear_?to_?srgb|gamma_?(correct|encode)", re.I)
-_DEEPEST = 5
+_LAST_WORD = re.compile(r"(\w+)\s*$")
+_DEEPEST, _LONGEST = 5, 256  # calls within calls that are followed; characters of a name
 
 
 @dataclass(frozen=True)
@@ -106,17 +107,16 @@ def encodes(text: str) -> bool:
 
 def lights(text: str) -> bool:
     """Whether main reaches what looks like light on a surface."""
-    return any(
-        re.search(r"\bdot\s*\(", text[f.start : f.end]) for f in functions(text) if f.name in reached(text)
-    )
+    return any(re.search(r"\bdot\s*\(", text[f.start : f.end]) for f in functions(text) if f.name in reached(text))
 
 
-def decodes(text: str, sampler: str) -> list[int]:
-    """How many times the colours of a sampler are decoded, for each way that they go; [] where it is not sampled."""
+@lru_cache(maxsize=64)
+def decodes(text: str, sampler: str) -> tuple[int, ...]:
+    """How many times the colours of a sampler are decoded, for each way that they go; () where it is not sampled."""
     ways: list[int] = []
     for position in _samples(text, sampler):
         ways += _follow(text, position, 0, frozenset(), 0)
-    return ways
+    return tuple(ways)
 
 
 def role(text: str, sampler: str) -> str | None:
@@ -145,7 +145,7 @@ def _calls(text: str, position: int) -> list[tuple[str, int]]:
         if text[k] in ")]":
             depth += 1
         elif text[k] in "([":
-            if depth == 0 and text[k] == "(" and (name := re.search(r"(\w+)\s*$", text[:k])):
+            if depth == 0 and text[k] == "(" and (name := _LAST_WORD.search(text[max(k - _LONGEST, 0) : k])):
                 found.append((name[1], k))
             depth = max(depth - 1, 0)
         k -= 1
@@ -202,9 +202,7 @@ def _follow(text: str, position: int, count: int, seen: frozenset, depth: int) -
     return ways or [count]
 
 
-def _uses(
-    text: str, function: Function, name: str, start: int, count: int, seen: frozenset, depth: int
-) -> list[int]:
+def _uses(text: str, function: Function, name: str, start: int, count: int, seen: frozenset, depth: int) -> list[int]:
     """The ways from where a function reads one of its variables, from ``start`` on."""
     ways: list[int] = []
     for match in re.finditer(rf"(?<![\w.]){name}\b(?!\s*(?:\.\w+\s*)?=(?!=))", text[start : function.end]):

@@ -1,9 +1,9 @@
-"""Checks what the vertex shader reads against what models and built-in shapes have: attributes, tangents, handedness."""
+"""Checks what the vertex shader reads against what models and shapes have: attributes, tangents, handedness."""
 
 from __future__ import annotations
 
 import os
-from functools import cache
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +19,9 @@ from .state import PassState, State, child_text, path_of
 from .structure import check_path, read_number
 
 _FIELDS = {f.name.capitalize(): f for f in Field}
-_SLICES = dict(zip(Field, (slice(0, 3), slice(3, 6), slice(6, 8), slice(8, 11), slice(11, 14), slice(14, 18)), strict=True))
+_SLICES = dict(
+    zip(Field, (slice(0, 3), slice(3, 6), slice(6, 8), slice(8, 11), slice(11, 14), slice(14, 18)), strict=True)
+)
 #: value of the input layout -> beginnings of an attribute's words that mean it
 _NAMES = {
     "Position": ("position", "pos", "vertex"),
@@ -29,13 +31,17 @@ _NAMES = {
     "Bitangent": ("bitangent", "binormal", "bitan"),
     "Color": ("color", "colour", "col"),
 }
-#: a share of triangles that is more than a seam
-_FEW = 0.001
+_FEW = 0.001  # a share of triangles that is no more than a seam
+_SLIVER = 1e-5  # twice a triangle's area over the square of its longer side: rounding makes such of nothing
 
 
-@cache
 def load(path: Path) -> MeshData:
     """A model file's vertices. NativeError."""
+    return _load(path.resolve(), path.stat().st_mtime_ns)
+
+
+@lru_cache(maxsize=32)
+def _load(path: Path, _changed: int) -> MeshData:
     native.open_context()
     return mesh_data(Mesh.load(path))
 
@@ -52,9 +58,12 @@ def check(state: State) -> None:
     """Checks the items of all passes."""
     for shader_pass in state.passes:
         attributes = _attributes(state, shader_pass)
+        first: dict[str, Element] = {}
         for item in shader_pass.items:
             if item.attributes.get("type") == "model":
-                _check_model(state, shader_pass, item, attributes)
+                first.setdefault(child_text(item, "filepath"), item)
+        for item in first.values():
+            _check_model(state, shader_pass, item, attributes)
         if attributes is not None and _reads_normal_map(shader_pass):
             _check_tangents(state, shader_pass, attributes)
     _check_layouts(state)
@@ -105,13 +114,11 @@ def _attributes(state: State, shader_pass: PassState) -> dict[str, int] | None:
 
 
 def _meaning(name: str) -> str | None:
-    parts = roles.words(name)
-    joined = "".join(parts)
-    for value, beginnings in _NAMES.items():
-        if any(p == b or (len(b) > 3 and p.startswith(b)) for p in parts for b in beginnings) or any(
-            len(b) > 6 and b in joined for b in beginnings
-        ):
-            return value
+    """The layout value that an attribute's name asks for, by its last telling word."""
+    for part in reversed(roles.words(name)):
+        for value, beginnings in _NAMES.items():
+            if any(part == b or (len(b) > 3 and part.startswith(b)) for b in beginnings):
+                return value
     return None
 
 
@@ -119,9 +126,7 @@ def _drawn(shader_pass: PassState) -> list[Element]:
     return [i for i in shader_pass.items if i.attributes.get("type") in ("geometry", "model", "vertexbuffer")]
 
 
-def _check_model(
-    state: State, shader_pass: PassState, item: Element, attributes: dict[str, int] | None
-) -> None:
+def _check_model(state: State, shader_pass: PassState, item: Element, attributes: dict[str, int] | None) -> None:
     relative = path_of(child_text(item, "filepath"))
     path, name = state.file(relative), item.attributes.get("name", "")
     at = item.child("filepath") or item
@@ -136,26 +141,25 @@ def _check_model(
     try:
         data = load(path)
     except NativeError as error:
-        reason = error.message.removeprefix(f"hn_mesh_load: {path}: ")
-        state.add("HS501", at, f'{what}: cannot read the model "{relative}": {reason}', "write it again, as glTF or OBJ")
+        reason = error.message.rpartition(f"{path.resolve()}: ")[2].partition(" of file ")[0]
+        state.add(
+            "HS501", at, f'{what}: cannot read the model "{relative}": {reason}', "write it again, as glTF or OBJ"
+        )
         return
-    for value in attributes or ():
-        field = _FIELDS.get(value)
-        if field is None or field in (Field.POSITION, Field.COLOR):
-            continue
-        missing = _missing(data, field)
-        if missing:
-            state.add(
-                "HS502",
-                at,
-                f'"{relative}" has no {value.lower()}s{missing}, and the vertex shader of pass "{shader_pass.name}" reads '
-                f"them at location {attributes[value]}: they are 0",
-                f"export the model with {value.lower()}s, or do without them in the shader",
-            )
+    values = [v for v in attributes or () if v in _FIELDS and v not in ("Position", "Color")]
+    lacking = [f"no {v.lower()}s {lack}" for v in values if (lack := _lack(data, _FIELDS[v]))]
+    if lacking:
+        state.add(
+            "HS502",
+            at,
+            f'"{relative}" has {" and ".join(lacking)}, which the vertex shader of pass "{shader_pass.name}" '
+            "reads: they are 0",
+            "export the model with them, or do without them in the shader",
+        )
 
 
-def _missing(data: MeshData, field: Field) -> str | None:
-    """What to say of a field that a mesh lacks: "" where all, and of how many vertices where some; None of none."""
+def _lack(data: MeshData, field: Field) -> str | None:
+    """At how many vertices a mesh lacks a field; None where at none."""
     values = data.vertices[:, _SLICES[field]]
     if field == Field.TEXCOORD:
         zero = 0 if field in data.fields else len(values)
@@ -163,7 +167,7 @@ def _missing(data: MeshData, field: Field) -> str | None:
         zero = int((np.abs(values).max(axis=1) == 0).sum() if len(values) else 0)
     if zero == 0:
         return None
-    return " at all" if zero == len(values) else f" at {zero} of {len(values)} vertices"
+    return "at all" if zero == len(values) else f"at {zero} of {len(values)} vertices"
 
 
 # ---- Tangents ------------------------------------------------------------------------------------------------
@@ -192,7 +196,9 @@ def tangent_agreement(data: MeshData) -> np.ndarray:
     along_u = (p1 * v2[:, None] - p2 * v1[:, None]) * np.sign(determinant)[:, None]
     tangent = corners[..., _SLICES[Field.TANGENT]].mean(axis=1)
     length = np.linalg.norm(along_u, axis=1) * np.linalg.norm(tangent, axis=1)
-    kept = np.isfinite(length) & (length > 0) & (determinant != 0)
+    area = np.linalg.norm(np.cross(p1, p2), axis=1)
+    is_sliver = area <= _SLIVER * np.maximum((p1**2).sum(axis=1), (p2**2).sum(axis=1))
+    kept = np.isfinite(length) & (length > 0) & (determinant != 0) & ~is_sliver
     return (along_u * tangent).sum(axis=1)[kept] / length[kept]
 
 
@@ -207,14 +213,18 @@ def handedness(data: MeshData) -> np.ndarray:
 def _check_tangents(state: State, shader_pass: PassState, attributes: dict[str, int]) -> None:
     if "Tangent" not in attributes:
         return
+    seen: set[str] = set()
     for item in _drawn(shader_pass):
         at, name = item, item.attributes.get("name", "")
-        kind = item.attributes.get("type")
+        kind, file = item.attributes.get("type"), child_text(item, "filepath")
+        if kind == "model" and file in seen:
+            continue
+        seen.add(file)
         if kind == "geometry":
             data = _shape(item)
             what = f'the built-in {child_text(item, "type")} "{name}"'
         elif kind == "model":
-            data = readable(state.file(path_of(child_text(item, "filepath"))))
+            data = readable(state.file(path_of(file)))
             what, at = f'the model of item "{name}"', item.child("filepath") or item
         else:
             data = None
@@ -226,7 +236,8 @@ def _check_tangents(state: State, shader_pass: PassState, attributes: dict[str, 
             state.add(
                 "HS503",
                 at,
-                f"the tangents of {what} in pass \"{shader_pass.name}\" point against growing u on {_share(against)} of its "
+                f'the tangents of {what} in pass "{shader_pass.name}" point against growing u on '
+                f"{_share(against)} of its "
                 "triangles, and the pass reads a normal map",
                 "use a model with tangents of its own, or turn the tangent in the shader"
                 if kind == "geometry"
@@ -238,7 +249,7 @@ def _check_tangents(state: State, shader_pass: PassState, attributes: dict[str, 
                 state.add(
                     "HS508",
                     at,
-                    f'{what} has mirrored texture coordinates at {_share(mirrored)} of its vertices, and pass '
+                    f"{what} has mirrored texture coordinates at {_share(mirrored)} of its vertices, and pass "
                     f'"{shader_pass.name}" does not read Bitangent',
                     "read Bitangent, and turn cross(n, t) by the sign of dot(cross(n, t), bitangent)",
                 )
@@ -271,7 +282,8 @@ def _check_layouts(state: State) -> None:
                 state.add(
                     "HS506",
                     item.child("filepath") or item,
-                    f'"{path}" has the layout {", ".join(other.layout)} in pass "{other.name}" (line {other.element.line}) '
+                    f'"{path}" has the layout {", ".join(other.layout)} in pass "{other.name}" (line '
+                    f"{other.element.line}) "
                     f'and {", ".join(shader_pass.layout)} in pass "{shader_pass.name}"',
                     "give both passes the same <inputlayout>, or the file another name",
                 )

@@ -1,4 +1,4 @@
-"""Checks which texture SHADERed gives to which sampler: by its search through the text, against what the author meant."""
+"""Checks which texture SHADERed gives to which sampler: by its search of the text, against what was meant."""
 
 from __future__ import annotations
 
@@ -68,7 +68,8 @@ def _check_pass(state: State, shader_pass: PassState) -> None:
         state.add(
             "HS303",
             bound[k].bind,
-            f'"{bound[k].name}" goes to no sampler of pass "{shader_pass.name}": the declarations are, in order: {listed}',
+            f'"{bound[k].name}" goes to no sampler of pass "{shader_pass.name}": the declarations are, in '
+            f"order: {listed}",
             "declare a sampler for it, or remove the bind",
         )
     _check_active(state, shader_pass, real, found)
@@ -113,7 +114,8 @@ def _check_active(state: State, shader_pass: PassState, real: dict[str, Declared
             state.add(
                 "HS302",
                 at,
-                f'the sampler "{name}" of pass "{shader_pass.name}" is declaration {k + 1}, but {len(bound)} textures are '
+                f'the sampler "{name}" of pass "{shader_pass.name}" is declaration {k + 1}, but {len(bound)} '
+                "textures are "
                 f"bound ({there})",
                 f'bind a texture to pass "{shader_pass.name}" in a slot after the others',
             )
@@ -122,7 +124,8 @@ def _check_active(state: State, shader_pass: PassState, real: dict[str, Declared
             state.add(
                 "HS308",
                 bound[k].bind,
-                f'"{bound[k].name}" goes to the {real[name].type} "{name}" of pass "{shader_pass.name}", which wants {kind}',
+                f'"{bound[k].name}" goes to the {real[name].type} "{name}" of pass "{shader_pass.name}", which '
+                f"wants {kind}",
                 "put the textures into the order of the declarations",
             )
 

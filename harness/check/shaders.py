@@ -16,7 +16,9 @@ from .state import PassState, State, flag, path_of
 from .structure import check_path
 
 #: what both compilers take; the driver's context is 3.3 core, and 4.6 is beyond Mesa's software
-_VERSIONS = re.compile(r"#version[ \t]+(330|400|410|420|430|440|450)([ \t]+core)?[ \t]*(//.*)?\r?$|#version[ \t]+3[12]0 es\b")
+_VERSIONS = re.compile(
+    r"#version[ \t]+(330|400|410|420|430|440|450)([ \t]+core)?[ \t]*(//.*)?\r?$|#version[ \t]+3[12]0 es\b"
+)
 _BOM = b"\xef\xbb\xbf"
 _LONG_NAMES = {"vs": "vertex", "ps": "pixel", "cs": "compute"}
 #: enough for the driver to get to the stage that is of interest
@@ -26,7 +28,9 @@ _TRIVIAL = {
 }
 
 # In glslang's syntax tree: what a stage reads or declares, with the line where.
-_READ = re.compile(r"^0:(\S+) +'(\w+)' \((?: layout\([^)]*\))? (?:smooth|flat|noperspective|centroid|sample) (?:\w+ )*?in ")
+_READ = re.compile(
+    r"^0:(\S+) +'(\w+)' \((?: layout\([^)]*\))? (?:smooth|flat|noperspective|centroid|sample) (?:\w+ )*?in "
+)
 _WRITTEN = re.compile(r"^0:\S+ +'(\w+)' \((?: ?layout\([^)]*\))? (?:\w+ )*?out ", re.MULTILINE)
 
 
@@ -188,18 +192,21 @@ def _place(state: State, shader_pass: PassState, source: glsl.Source, line: int)
 def _tell(
     state: State, shader_pass: PassState, code: str, source: glsl.Source, log: str, told: set[tuple], who: str
 ) -> None:
-    """Adds the errors of a compiler's log, each once, and none in lines that have one by the other compiler."""
+    """Adds the errors of a compiler's log, one a line, and none in lines that have one already."""
+    by_line: dict[int, list[str]] = {}
     for line, message in source.errors(log):
+        by_line.setdefault(line, []).append(message)
+    for line, messages in by_line.items():
         at = _place(state, shader_pass, source, line)
         place = (glsl.shown_path(state.path), at.line) if isinstance(at, Element) else at
-        if (place, message) in told or (code == "HS104" and any(place == other for other, _ in told)):
+        if place in told:
             continue
-        told.add((place, message))
+        told.add(place)
         quoted = source.text.split("\n")[line - 1].strip() if line > 0 else ""
         state.add(
             code,
             at,
-            f'{who}: {message} (in pass "{shader_pass.name}")',
+            f'{who}: {"; ".join(messages)} (in pass "{shader_pass.name}")',
             f"correct the line: {quoted}" if quoted else "correct the shader",
         )
 
@@ -223,7 +230,12 @@ def _compile_rest(state: State, shader_pass: PassState, told: set[tuple]) -> Non
 
 
 def _compile(
-    state: State, shader_pass: PassState, texts: Mapping[Stage, str], stage: Stage, source: glsl.Source, told: set[tuple]
+    state: State,
+    shader_pass: PassState,
+    texts: Mapping[Stage, str],
+    stage: Stage,
+    source: glsl.Source,
+    told: set[tuple],
 ) -> None:
     try:
         renderer.link(dict(texts))
@@ -256,7 +268,9 @@ def _line_of(source: glsl.Source, log: str) -> int | None:
     """The line that declares the first name of a linker's log that a source declares."""
     for name in re.findall(r"[`'\"]?\b([A-Za-z_]\w*)\b", log):
         for line, text in enumerate(source.text.split("\n"), 1):
-            if re.match(rf"\s*(?:layout\s*\(.*\)\s*)?(?:\w+\s+)*(?:in|out|uniform)\s.*\b{name}\b\s*(\[.*\])?\s*;", text):
+            if re.match(
+                rf"\s*(?:layout\s*\(.*\)\s*)?(?:\w+\s+)*(?:in|out|uniform)\s.*\b{name}\b\s*(\[.*\])?\s*;", text
+            ):
                 file, number = source.origin(line)
                 return number if file == source.path else None
     return None

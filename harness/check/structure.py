@@ -202,7 +202,9 @@ def _read_objects(state: State, passes: set[str]) -> dict[str, list[Bound]]:
                 'add rsize="1,1" for the size of the window',
             )
         if len((path or "").encode()) > PATH_LIMIT:
-            state.add("HS004", element, f'the path "{path[:40]}..." is longer than {PATH_LIMIT} characters', "shorten it")
+            state.add(
+                "HS004", element, f'the path "{path[:40]}..." is longer than {PATH_LIMIT} characters', "shorten it"
+            )
         for bind in element.all("bind"):
             to = bind.attributes.get("name", "")
             if to not in passes:
@@ -255,7 +257,8 @@ def _check_camera(state: State) -> None:
             state.add(
                 "HS011",
                 entry,
-                f"the camera's distance is {distance.strip()}, which SHADERed brings into {_NEAREST:g} to {_FARTHEST:g}",
+                f"the camera's distance is {distance.strip()}, which SHADERed brings into {_NEAREST:g} to "
+                f"{_FARTHEST:g}",
                 f"write a distance from {_NEAREST:g} to {_FARTHEST:g}, and scale the scene",
             )
     if not entries:
@@ -284,4 +287,3 @@ def check_path(state: State, at: Element, text: str) -> None:
 def read_number(text: str) -> float | None:
     """A number as the .sprj means it, None where SHADERed does not read all of the text."""
     return float(text) if _NUMBER.fullmatch(text) else None
-

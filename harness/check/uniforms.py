@@ -264,7 +264,9 @@ def _check_active(
             "HS202",
             at,
             f'the uniform {kind} "{name}" of pass "{shader_pass.name}" has no variable{hint}',
-            f'add <variable type="{fitting}" name="{name}"> to the pass' if fitting else "use int: no variable is a uint",
+            f'add <variable type="{fitting}" name="{name}"> to the pass'
+            if fitting
+            else "use int: no variable is a uint",
         )
     if uniform.size > 1 and name.endswith("[0]"):
         state.add(
