@@ -12,7 +12,6 @@ _UNIFORM = re.compile(r"(?:\blayout\s*\([^)]*\)\s*)?\buniform\b\s*([^;{}]*)(;|\{
 _ATTRIBUTE = re.compile(
     r"(?:\blayout\s*\(([^)]*)\)\s*)?(?<!\w)(?:in|attribute)\s+(?:(?:highp|mediump|lowp)\s+)?(\w+)\s+(\w+)\s*(?:\[[^\]]*\])?\s*;"
 )
-_SKIPPED = {"highp", "mediump", "lowp", "const", "readonly", "writeonly", "coherent", "restrict", "volatile"}
 
 
 @dataclass(frozen=True)
@@ -37,6 +36,15 @@ def uniforms(text: str) -> dict[str, Declared]:
         for name, is_array, initialiser in declarators:
             found[name] = Declared(kind, name, is_array, initialiser, line)
     return found
+
+
+def blocks(text: str) -> list[tuple[int, str]]:
+    """(line, body) of each uniform block."""
+    return [
+        (text.count("\n", 0, m.end(2)) + 1, text[m.end(2) : closing(text, m.start(2))])
+        for m in _UNIFORM.finditer(text)
+        if m[2] == "{"
+    ]
 
 
 def _split(text: str) -> tuple[str, list[tuple[str, bool, str]]]:

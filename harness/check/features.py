@@ -8,7 +8,7 @@ import numpy as np
 
 from ..native import Stage
 from ..xml_lines import Element
-from . import flow, models, roles, samplers, textures
+from . import models, roles, samplers, textures
 from .state import Bound, PassState, State, child_text, path_of
 
 _FLAT = 1  # bytes that a map may differ by and still be called the same everywhere
@@ -21,8 +21,7 @@ def check(state: State) -> None:
         if shader_pass.program is None or Stage.FRAGMENT not in shader_pass.preprocessed:
             continue
         for bound, sampler in samplers.given(shader_pass):
-            if sampler is not None and sampler in samplers.declared(shader_pass.preprocessed[Stage.FRAGMENT]):
-                _check_texture(state, shader_pass, bound, sampler)
+            _check_texture(state, shader_pass, bound, sampler)
         _check_metalness(state, shader_pass)
         _check_mirrored(state, shader_pass)
 
@@ -56,8 +55,7 @@ def is_constant(image: np.ndarray) -> bool:
 
 
 def _check_texture(state: State, shader_pass: PassState, bound: Bound, sampler: str) -> None:
-    text = shader_pass.preprocessed[Stage.FRAGMENT]
-    role = (roles.of_file(bound.path) if bound.path else None) or roles.of_name(sampler) or flow.role(text, sampler)
+    role = (roles.of_file(bound.path) if bound.path else None) or samplers.wanted_role(shader_pass, sampler)
     if sampler not in shader_pass.program.uniforms:
         state.add(
             "HS603",

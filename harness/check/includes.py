@@ -94,18 +94,20 @@ def check(state: State, stage: Stage, path: Path, defines: Mapping[str, str]) ->
     if not expansion.includes:
         return True
     reached = _reached(stage, expansion.lines, defines)
-    before = len(state.findings)
+    fine = True
     for index, include in enumerate(expansion.includes):
-        if index in reached:
-            _check_one(state, include, reached[index], reached)
+        wrong = _wrong(state, include, reached[index], reached) if index in reached else None
+        if wrong:
+            state.add(wrong[0], include.at, *wrong[1:])
+            fine = False
     for file in expansion.with_bom:
+        fine = False
         state.add(
             "HS109",
             (file, 1),
             "the included file begins with a byte order mark, on which the driver fails",
             "save it as UTF-8 without BOM",
         )
-    fine = not any(f.severity == "error" for f in state.findings[before:])
     _check_guard(state, path)
     return fine
 
@@ -129,63 +131,58 @@ def _reached(stage: Stage, lines: list[str], defines: Mapping[str, str]) -> dict
     return reached
 
 
-def _check_one(state: State, include: _Include, behaviour: str, reached: Mapping[int, str]) -> None:
+def _wrong(state: State, include: _Include, behaviour: str, reached: Mapping[int, str]) -> tuple[str, str, str] | None:
+    """(code, message, fix) of what is wrong with an include that is reached, the extension standing as it does."""
     name = include.name
     if include.driver is None and include.glslang is None:
         looked = ", ".join(dict.fromkeys(shown_path(d) + os.sep for d in state.include_dirs))
-        state.add(
+        return (
             "HS107",
-            include.at,
             f'cannot find the included file "{name}" (looked in {looked})',
             "correct the path: it is relative to the .sprj, or to one of its include paths",
         )
-    elif include.driver is None:
+    if include.driver is None:
         folder = os.path.relpath(include.glslang.parent, state.folder)
         relative = os.path.relpath(include.glslang, state.folder)
-        state.add(
+        return (
             "HS108",
-            include.at,
             f'"{name}" lies beside the shader, where glslang finds it; the text for the driver loses the line',
             f'write #include "{relative}", or add the include path {folder} to the settings',
         )
-    elif not os.path.samefile(include.driver, include.glslang):
-        state.add(
+    if not os.path.samefile(include.driver, include.glslang):
+        return (
             "HS108",
-            include.at,
             f'"{name}" is {shown_path(include.driver)} for the driver and {shown_path(include.glslang)} for glslang',
             "give the two files different names, or write the path from the project's folder",
         )
-    elif not include.is_pasted:
-        state.add(
+    if not include.is_pasted:
+        return (
             "HS109",
-            include.at,
             f'the #include of "{name}" is not pasted for the driver: it must be exactly #include, in column 0',
             f'write #include "{name}" at the beginning of the line',
         )
-    elif include.is_cut_off:
-        state.add(
+    if include.is_cut_off:
+        return (
             "HS109",
-            include.at,
             f'the #include of "{name}" is the last line and has no end, which glslang refuses',
             "end the file with a new line",
         )
-    elif behaviour not in ("enable", "warn"):
+    if behaviour not in ("enable", "warn"):
         how = f"behind #extension {EXTENSION} : {behaviour}" if behaviour else f"without #extension {EXTENSION}"
         refuses = "the driver refuses that" if behaviour == "require" else "glslang refuses that"
-        state.add(
+        return (
             "HS109",
-            include.at,
             f'the #include of "{name}" stands {how}: {refuses}',
             f"put below #version: #ifdef {EXTENSION}, #extension {EXTENSION} : enable, #endif, a line each",
         )
-    elif include.earlier is not None and include.earlier not in reached:
-        state.add(
+    if include.earlier is not None and include.earlier not in reached:
+        return (
             "HS109",
-            include.at,
             f'this second #include of "{name}" in the file is removed from the driver\'s text, and the first is '
             "under a false #if",
             "include it once, outside of #if",
         )
+    return None
 
 
 def _check_guard(state: State, path: Path) -> None:

@@ -75,7 +75,9 @@ def _attributes(state: State, shader_pass: PassState) -> dict[str, int] | None:
         return None
     source = shader_pass.sources[Stage.VERTEX]
     declared = declarations.attributes(shader_pass.preprocessed[Stage.VERTEX])
-    only_quads = all(child_text(i, "type") == "ScreenQuadNDC" for i in _drawn(shader_pass))
+    drawn = _drawn(shader_pass)
+    only_quads = all(child_text(i, "type") == "ScreenQuadNDC" for i in drawn)
+    has_buffers = any(i.attributes.get("type") == "vertexbuffer" or child_text(i, "instancebuffer") for i in drawn)
     layout = ("Position", "Texcoord") if only_quads else shader_pass.layout
     read: dict[str, int] = {}
     for name, attribute in shader_pass.program.attributes.items():
@@ -92,6 +94,8 @@ def _attributes(state: State, shader_pass: PassState) -> dict[str, int] | None:
                 f"write layout(location = {attribute.location}) in ...",
             )
         if attribute.location >= len(layout):
+            if has_buffers:  # whose fields follow the layout
+                continue
             state.add(
                 "HS504",
                 at,
@@ -177,10 +181,8 @@ def _reads_normal_map(shader_pass: PassState) -> bool:
     """Whether a texture that is a normal map by its name or its use goes to a sampler that is sampled."""
     text = shader_pass.preprocessed.get(Stage.FRAGMENT, "")
     for bound, sampler in samplers.given(shader_pass):
-        if sampler is None or not flow.decodes(text, sampler):
-            continue
-        names = (roles.of_file(bound.path or ""), roles.of_name(sampler), flow.role(text, sampler))
-        if roles.NORMAL in names:
+        is_normal = roles.NORMAL in (roles.of_file(bound.path or ""), samplers.wanted_role(shader_pass, sampler))
+        if is_normal and flow.decodes(text, sampler):
             return True
     return False
 

@@ -35,11 +35,22 @@ def declared(text: str) -> dict[str, Declared]:
     return {n: d for n, d in declarations.uniforms(text).items() if "sampler" in d.type}
 
 
-def given(shader_pass: PassState) -> list[tuple[Bound, str | None]]:
-    """Each bound object with the name that SHADERed gives it to, None where there are too few."""
-    source = shader_pass.sources.get(Stage.FRAGMENT)
-    found = search(source.text) if source else []
-    return [(b, found[k].name if k < len(found) else None) for k, b in enumerate(shader_pass.bound)]
+def given(shader_pass: PassState) -> list[tuple[Bound, str]]:
+    """Each bound object with the name of the sampler that SHADERed gives it to. None at all where text that declares
+    nothing takes a texture: then all are at the wrong one, and that is said already."""
+    if shader_pass.program is None or Stage.FRAGMENT not in shader_pass.sources:
+        return []
+    found = search(shader_pass.sources[Stage.FRAGMENT].text)
+    real = declared(shader_pass.preprocessed[Stage.FRAGMENT])
+    pairs = list(zip(shader_pass.bound, found, strict=False))
+    if any(_is_none(place, real) for _, place in pairs):
+        return []
+    return [(bound, place.name) for bound, place in pairs if place.name in real]
+
+
+def wanted_role(shader_pass: PassState, sampler: str) -> str | None:
+    """What a sampler is for, by its name or by its use."""
+    return roles.of_name(sampler) or flow.role(shader_pass.preprocessed[Stage.FRAGMENT], sampler)
 
 
 def check(state: State) -> None:
@@ -56,7 +67,7 @@ def _check_pass(state: State, shader_pass: PassState) -> None:
     names = [f.name for f in found]
     listed = ", ".join(names) or "none"
     for k, place in enumerate(found[: len(bound)]):
-        if place.name not in real and not _is_misread(place, real):
+        if _is_none(place, real):
             state.add(
                 "HS301",
                 source.origin(place.line),
@@ -73,12 +84,12 @@ def _check_pass(state: State, shader_pass: PassState) -> None:
             "declare a sampler for it, or remove the bind",
         )
     _check_active(state, shader_pass, real, found)
-    _check_roles(state, shader_pass, real)
+    _check_roles(state, shader_pass)
 
 
-def _is_misread(place: Found, real: dict[str, Declared]) -> bool:
-    """Whether the search found a real declaration but not its name."""
-    return any(d.line == place.line for d in real.values())
+def _is_none(place: Found, real: dict[str, Declared]) -> bool:
+    """Whether what the search found declares no sampler, not even one whose name it misread."""
+    return place.name not in real and all(d.line != place.line for d in real.values())
 
 
 def _check_active(state: State, shader_pass: PassState, real: dict[str, Declared], found: list[Found]) -> None:
@@ -130,15 +141,12 @@ def _check_active(state: State, shader_pass: PassState, real: dict[str, Declared
             )
 
 
-def _check_roles(state: State, shader_pass: PassState, real: dict[str, Declared]) -> None:
+def _check_roles(state: State, shader_pass: PassState) -> None:
     """Roles by the file's name and by the sampler's use that contradict each other."""
-    text = shader_pass.preprocessed[Stage.FRAGMENT]
     for bound, name in given(shader_pass):
         role = roles.of_file(bound.path) if bound.path else None
-        if role is None or name not in real:
-            continue
-        wanted = roles.of_name(name) or flow.role(text, name)
-        if wanted is not None and wanted != role:
+        wanted = wanted_role(shader_pass, name)
+        if role is not None and wanted is not None and wanted != role:
             state.add(
                 "HS306",
                 bound.bind,

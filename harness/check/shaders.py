@@ -27,6 +27,9 @@ _TRIVIAL = {
     Stage.FRAGMENT: "#version 330\nvoid main() {}\n",
 }
 
+#: glslang's preprocessor puts spaces around the point of a member
+_AROUND_POINT = re.compile(r" ?\. ?(?=[A-Za-z_])")
+
 # In glslang's syntax tree: what a stage reads or declares, with the line where.
 _READ = re.compile(
     r"^0:(\S+) +'(\w+)' \((?: layout\([^)]*\))? (?:smooth|flat|noperspective|centroid|sample) (?:\w+ )*?in "
@@ -45,6 +48,7 @@ def check(state: State) -> None:
         for stage, (path, at) in stages.items():
             fine &= _load(state, shader_pass, stage, path, at)
         fine = all([_check_glslang(state, shader_pass, stage, told) for stage in shader_pass.sources]) and fine
+        shader_pass.is_complete &= len(shader_pass.sources) == len(stages)
         if fine and shader_pass.is_complete:
             _link(state, shader_pass, told)
         else:
@@ -215,7 +219,8 @@ def _check_glslang(state: State, shader_pass: PassState, stage: Stage, told: set
     source = shader_pass.sources[stage]
     try:
         native.glsl_check(stage, source.text, spirv=True)
-        shader_pass.preprocessed[stage] = native.glsl_preprocess(stage, source.text)
+        text = native.glsl_preprocess(stage, source.text)
+        shader_pass.preprocessed[stage] = _AROUND_POINT.sub(".", text)
     except NativeError as error:
         _tell(state, shader_pass, "HS103", source, str(error), told, "glslang")
         return False
@@ -224,7 +229,8 @@ def _check_glslang(state: State, shader_pass: PassState, stage: Stage, told: set
 
 def _compile_rest(state: State, shader_pass: PassState, told: set[tuple]) -> None:
     """What the driver says of each stage by itself, where the pass cannot be linked."""
-    for stage, source in shader_pass.sources.items():
+    for stage in shader_pass.preprocessed:
+        source = shader_pass.sources[stage]
         if stage in _TRIVIAL:
             _compile(state, shader_pass, _TRIVIAL | {stage: source.text}, stage, source, told)
 

@@ -48,7 +48,8 @@ class Bound:
 
 @dataclass
 class PassState:
-    """A pass that draws. ``sources`` and ``program`` are there as far as its shaders compile."""
+    """A pass that draws. ``layout`` has "" for a value that there is not. ``sources`` and ``program`` are there as far
+    as its shaders compile."""
 
     element: Element
     name: str
@@ -58,7 +59,7 @@ class PassState:
     sources: dict[Stage, Source] = field(default_factory=dict)
     preprocessed: dict[Stage, str] = field(default_factory=dict)
     program: Program | None = None
-    is_complete: bool = True  # whether all of its shader files are there
+    is_complete: bool = True  # whether all of its shaders have a source
 
     @property
     def variables(self) -> list[Element]:

@@ -66,7 +66,7 @@ def check(state: State) -> None:
                 element,
                 name,
                 items,
-                tuple(v if v in (*LAYOUT_VALUES, *_BUFFER_VALUES) else "Position" for v in values) or DEFAULT_LAYOUT,
+                tuple(v if v in (*LAYOUT_VALUES, *_BUFFER_VALUES) else "" for v in values) or DEFAULT_LAYOUT,
                 sorted(bound.get(name, ()), key=lambda b: b.slot),
             )
         )

@@ -55,12 +55,13 @@ def check(state: State) -> None:
         if id(element) in used and element.attributes.get("type") == "texture":
             _check_files(state, element)
     for shader_pass in state.passes:
-        for bound, sampler in samplers.given(shader_pass):
+        for bound in shader_pass.bound:
             if bound.path is not None:
                 _check_flip(state, shader_pass, bound)
-                if shader_pass.program is not None and sampler is not None:
-                    _check_colors(state, shader_pass, bound, sampler)
-                    _check_green(state, shader_pass, bound, sampler)
+        for bound, sampler in samplers.given(shader_pass):
+            if bound.path is not None:
+                _check_colors(state, shader_pass, bound, sampler)
+                _check_green(state, shader_pass, bound, sampler)
 
 
 def _check_files(state: State, element: Element) -> None:
@@ -130,7 +131,7 @@ def _check_colors(state: State, shader_pass: PassState, bound: Bound, sampler: s
     """sRGB decoded never, twice, or where there is none."""
     text = shader_pass.preprocessed[Stage.FRAGMENT]
     role, ways = roles.of_file(bound.path), flow.decodes(text, sampler)
-    if role is None or not ways:
+    if role is None or not ways or samplers.wanted_role(shader_pass, sampler) not in (role, None):
         return
     what = f'"{bound.path}", by its name a {role} map, read by "{sampler}" of pass "{shader_pass.name}"'
     at = _first_use(shader_pass, sampler)

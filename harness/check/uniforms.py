@@ -152,7 +152,7 @@ def _check_item_values(state: State, shader_pass: PassState) -> None:
 
 def _check_macros(state: State, shader_pass: PassState) -> None:
     """Macros that no shader of the pass mentions."""
-    if not shader_pass.sources:
+    if not shader_pass.sources or not shader_pass.is_complete:
         return
     own = {d.attributes.get("name", ""): d for d in shader_pass.macros}
     words: set[str] = set()
@@ -185,10 +185,10 @@ def _check_uniforms(state: State, shader_pass: PassState) -> None:
         base = re.match(r"\w+", name)[0]
         at = _place(shader_pass, declared, base)
         if uniform.location < 0:
-            block = name.partition(".")[0]
+            block = _block(shader_pass, name)
             if block not in told:
                 message = f'pass "{shader_pass.name}" reads "{name}" of a uniform block'
-                state.add("HS209", at, message, "declare its members as uniforms of their own")
+                state.add("HS209", block or at, message, "declare its members as uniforms of their own")
             told.add(block)
         elif kind in _GLSL_TYPES:
             _check_active(state, shader_pass, name, uniform, kind, variables, at)
@@ -211,6 +211,16 @@ def _place(shader_pass: PassState, declared: dict, base: str) -> Element | tuple
         return shader_pass.element
     stage, found = declared[base]
     return shader_pass.sources[stage].origin(found.line)
+
+
+def _block(shader_pass: PassState, name: str) -> tuple[str, int] | None:
+    """Where the block with a member of that name is declared."""
+    member = re.match(r"\w+", name.rpartition(".")[2])[0]
+    for stage, text in shader_pass.preprocessed.items():
+        for line, body in declarations.blocks(text):
+            if re.search(rf"\b{member}\b", body):
+                return shader_pass.sources[stage].origin(line)
+    return None
 
 
 def _check_one(
