@@ -37,13 +37,13 @@ def declared(text: str) -> dict[str, Declared]:
 
 def given(shader_pass: PassState) -> list[tuple[Bound, str]]:
     """Each bound object with the name of the sampler that SHADERed gives it to. None at all where text that declares
-    nothing takes a texture: then all are at the wrong one, and that is said already."""
+    nothing takes a texture or a declaration is overlooked: then others are at the wrong one, and that is said already."""
     if shader_pass.program is None or Stage.FRAGMENT not in shader_pass.sources:
         return []
     found = search(shader_pass.sources[Stage.FRAGMENT].text)
     real = declared(shader_pass.preprocessed[Stage.FRAGMENT])
     pairs = list(zip(shader_pass.bound, found, strict=False))
-    if any(_is_none(place, real) for _, place in pairs):
+    if any(_is_none(place, real) for _, place in pairs) or _overlooked(found, real):
         return []
     return [(bound, place.name) for bound, place in pairs if place.name in real]
 
@@ -75,7 +75,7 @@ def _check_pass(state: State, shader_pass: PassState) -> None:
                 f'"{shader_pass.name}", but declares no sampler there',
                 "remove the text, or write it so that no ; follows the word sampler in its line",
             )
-    for k in range(len(found), len(bound)):
+    for k in range(len(found), 0 if _overlooked(found, real) else len(bound)):
         state.add(
             "HS303",
             bound[k].bind,
@@ -90,6 +90,11 @@ def _check_pass(state: State, shader_pass: PassState) -> None:
 def _is_none(place: Found, real: dict[str, Declared]) -> bool:
     """Whether what the search found declares no sampler, not even one whose name it misread."""
     return place.name not in real and all(d.line != place.line for d in real.values())
+
+
+def _overlooked(found: list[Found], real: dict[str, Declared]) -> bool:
+    """Whether the search finds nothing where a sampler is declared."""
+    return not {d.line for d in real.values()} <= {f.line for f in found}
 
 
 def _check_active(state: State, shader_pass: PassState, real: dict[str, Declared], found: list[Found]) -> None:

@@ -25,7 +25,7 @@ COLOR = "    color = vec4("
         ("HS103", [("shaders/brdf.glsl", "return NoL > 0.0", "return NoLL > 0.0")], "shaders/brdf.glsl", "NoLL"),
         (
             "HS103",
-            [(SPRJ, '"TONE_CURVE" active="true">', '"TONE_CURVE" active="true">1 +')],
+            [(SPRJ, '"TONE_CURVE" active="true">', '"TONE_CURVE" active="true">1 + (')],
             "shaders/color.glsl",
             "#if TONE",
         ),
