@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 from .loops import closing
 
@@ -25,7 +26,8 @@ class Declared:
     line: int
 
 
-def uniforms(text: str) -> dict[str, Declared]:
+@lru_cache(maxsize=128)
+def uniforms(text: str) -> Mapping[str, Declared]:
     """Name -> the uniform of that name; blocks are left out."""
     found = {}
     for match in _UNIFORM.finditer(text):

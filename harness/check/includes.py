@@ -12,10 +12,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import native
 from ..errors import NativeError
 from ..glsl import shown_path
 from ..native import Stage
+from . import renderer
 from .state import State
 
 _PASTED = re.compile(r'#include\s+(?:"([^"]+)"|<([^>]+)>)')
@@ -118,7 +118,7 @@ def _reached(stage: Stage, lines: list[str], defines: Mapping[str, str]) -> dict
     # Nothing but the preprocessor sees this, so the marks may stand where no declaration may.
     text = "\n".join([lines[0], *macros, *lines[1:]]) + "\n"
     try:
-        text = native.glsl_preprocess(stage, text)
+        text = renderer.preprocess(stage, text)
     except NativeError:
         pass  # the compilers say why; until then every include counts
     reached, behaviour = {}, ""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 from .. import native
-from ..errors import HarnessError, ProjectError
+from ..errors import ProjectError
 from ..native import Program, Stage
 
 try:
@@ -13,7 +16,17 @@ try:
 except ImportError:
     from ..prepare import SYSTEM_MACROS, declared_samplers
 
-__all__ = ["STAGES", "SYSTEM_MACROS", "Refusal", "declared_samplers", "link", "refusals"]
+__all__ = [
+    "STAGES",
+    "SYSTEM_MACROS",
+    "Refusal",
+    "check_for_spirv",
+    "declared_samplers",
+    "link",
+    "preprocess",
+    "refusals",
+    "tree",
+]
 
 #: type of a <shader> in the .sprj -> stage, as far as the native library has it, in the order of drawing
 STAGES: dict[str, Stage] = {
@@ -32,14 +45,44 @@ STAGES: dict[str, Stage] = {
 
 def link(texts: dict[Stage, str]) -> Program:
     """The program of these stages. NativeError ``STAGE: LOG`` or ``link: LOG``."""
+    return _link(tuple(texts.items()))
+
+
+# Passes share texts, and whoever checks again after a change shares most.
+@lru_cache(maxsize=32)
+def _link(texts: tuple[tuple[Stage, str], ...]) -> Program:
     native.open_context()
     if hasattr(Program, "of_stages"):
-        return Program.of_stages(texts)
-    return Program(texts[Stage.VERTEX], texts[Stage.FRAGMENT])
+        return Program.of_stages(dict(texts))
+    by_stage = dict(texts)
+    return Program(by_stage[Stage.VERTEX], by_stage[Stage.FRAGMENT])
 
 
-class Refusal(tuple):
-    """(whether it is only a warning, file, line, message) of what the reader says about a project."""
+@lru_cache(maxsize=128)
+def check_for_spirv(stage: Stage, text: str) -> None:
+    """SHADERed's own check. NativeError with glslang's log."""
+    native.glsl_check(stage, text, spirv=True)
+
+
+@lru_cache(maxsize=128)
+def preprocess(stage: Stage, text: str) -> str:
+    """The text after the preprocessor, line by line, without the spaces that it puts around the point of a member."""
+    return re.sub(r" ?\. ?(?=[A-Za-z_])", ".", native.glsl_preprocess(stage, text))
+
+
+@lru_cache(maxsize=128)
+def tree(stage: Stage, text: str) -> str:
+    """glslang's dump of the syntax tree."""
+    return native.glsl_tree(stage, text)
+
+
+class Refusal(NamedTuple):
+    """What the reader says about a project."""
+
+    is_warning: bool
+    file: str | None
+    line: int | None
+    message: str
 
 
 def refusals(path: Path) -> list[Refusal]:
@@ -52,13 +95,13 @@ def refusals(path: Path) -> list[Refusal]:
         return _refused(lambda: sprj.read(path))
     traps = Traps(keep_going=True)
     found = _refused(lambda: sprj.read(path, traps))
-    found = [Refusal((False, e.file, e.line, e.message)) for e in traps.errors] + found
-    return found + [Refusal((True, w.file, w.line, w.message)) for w in traps.warnings]
+    found = [Refusal(False, e.file, e.line, e.message) for e in traps.errors] + found
+    return found + [Refusal(True, w.file, w.line, w.message) for w in traps.warnings]
 
 
 def _refused(read) -> list[Refusal]:
     try:
         read()
-    except (ProjectError, HarnessError) as error:
-        return [Refusal((False, error.file, error.line, error.message))]
+    except ProjectError as error:
+        return [Refusal(False, error.file, error.line, error.message)]
     return []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 
 from ..native import Stage
 from . import declarations, flow, renderer, roles
@@ -21,13 +22,15 @@ class Found:
     line: int
 
 
-def search(text: str) -> list[Found]:
+@lru_cache(maxsize=64)
+def search(text: str) -> tuple[Found, ...]:
     """SHADERed's search, with lines: it never goes beyond one."""
-    return [
+    return tuple(
         Found(name, number)
         for number, line in enumerate(text.split("\n"), 1)
+        if "sampler" in line
         for name in renderer.declared_samplers(line)
-    ]
+    )
 
 
 def declared(text: str) -> dict[str, Declared]:
@@ -37,7 +40,8 @@ def declared(text: str) -> dict[str, Declared]:
 
 def given(shader_pass: PassState) -> list[tuple[Bound, str]]:
     """Each bound object with the name of the sampler that SHADERed gives it to. None at all where text that declares
-    nothing takes a texture or a declaration is overlooked: then others are at the wrong one, and that is said already."""
+    nothing takes a texture or a declaration is overlooked: others are at the wrong one then, and that is said already.
+    """
     if shader_pass.program is None or Stage.FRAGMENT not in shader_pass.sources:
         return []
     found = search(shader_pass.sources[Stage.FRAGMENT].text)
@@ -92,12 +96,12 @@ def _is_none(place: Found, real: dict[str, Declared]) -> bool:
     return place.name not in real and all(d.line != place.line for d in real.values())
 
 
-def _overlooked(found: list[Found], real: dict[str, Declared]) -> bool:
+def _overlooked(found: tuple[Found, ...], real: dict[str, Declared]) -> bool:
     """Whether the search finds nothing where a sampler is declared."""
     return not {d.line for d in real.values()} <= {f.line for f in found}
 
 
-def _check_active(state: State, shader_pass: PassState, real: dict[str, Declared], found: list[Found]) -> None:
+def _check_active(state: State, shader_pass: PassState, real: dict[str, Declared], found: tuple[Found, ...]) -> None:
     source, bound = shader_pass.sources[Stage.FRAGMENT], shader_pass.bound
     names = [f.name for f in found]
     vertex: dict[str, tuple[Stage, Declared]] = {}

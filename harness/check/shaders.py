@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from .. import glsl, native
+from .. import glsl
 from ..errors import GlslError, NativeError, did_you_mean
 from ..native import Stage
 from ..xml_lines import Element
@@ -26,9 +26,6 @@ _TRIVIAL = {
     Stage.VERTEX: "#version 330\nvoid main() { gl_Position = vec4(0.0); }\n",
     Stage.FRAGMENT: "#version 330\nvoid main() {}\n",
 }
-
-#: glslang's preprocessor puts spaces around the point of a member
-_AROUND_POINT = re.compile(r" ?\. ?(?=[A-Za-z_])")
 
 # In glslang's syntax tree: what a stage reads or declares, with the line where.
 _READ = re.compile(
@@ -218,9 +215,8 @@ def _tell(
 def _check_glslang(state: State, shader_pass: PassState, stage: Stage, told: set[tuple]) -> bool:
     source = shader_pass.sources[stage]
     try:
-        native.glsl_check(stage, source.text, spirv=True)
-        text = native.glsl_preprocess(stage, source.text)
-        shader_pass.preprocessed[stage] = _AROUND_POINT.sub(".", text)
+        renderer.check_for_spirv(stage, source.text)
+        shader_pass.preprocessed[stage] = renderer.preprocess(stage, source.text)
     except NativeError as error:
         _tell(state, shader_pass, "HS103", source, str(error), told, "glslang")
         return False
@@ -289,8 +285,8 @@ def _check_varyings(state: State, shader_pass: PassState) -> None:
         return
     before = order[order.index(Stage.FRAGMENT) - 1]
     fragment, source = shader_pass.sources[Stage.FRAGMENT], shader_pass.sources[before]
-    written = {m[1] for m in _WRITTEN.finditer(native.glsl_tree(before, source.text))}
-    body, _, _ = native.glsl_tree(Stage.FRAGMENT, fragment.text).partition("Linker Objects")
+    written = {m[1] for m in _WRITTEN.finditer(renderer.tree(before, source.text))}
+    body, _, _ = renderer.tree(Stage.FRAGMENT, fragment.text).partition("Linker Objects")
     seen = set()
     for line in body.splitlines():
         match = _READ.match(line)

@@ -84,3 +84,8 @@ def test_all_faults_are_found_at_once(scene):
         ("HS103", "shaders/backdrop.frag", "smoothstop"),
         ("HS103", "shaders/normal_map.glsl", "normale;"),
     )
+
+
+def test_what_the_reader_warns_of_is_found_where_nothing_else_is(scene):
+    pytest.importorskip("harness.traps")
+    scene.breaks([(SPRJ, 'wrap_s="Repeat"', 'wrap_s="Repeated"')], ("HS007", SPRJ, "PaintedMetal_1K-PNG_Color.png"))

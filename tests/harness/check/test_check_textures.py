@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 import pytest
 
 SPRJ, MATERIAL, BRDF = "project.sprj", "shaders/material.glsl", "shaders/brdf.glsl"
@@ -70,7 +68,8 @@ def test_a_fault_is_found_in_its_line(scene, code, edits, file, snippet):
             (
                 MATERIAL,
                 "Material material_at",
-                "#if HAS_ALBEDO_MAP\nvec3 read(vec2 at) { return texture(ALBEDO_MAP, at).rgb; }\n#endif\nMaterial material_at",
+                "#if HAS_ALBEDO_MAP\nvec3 read(vec2 at) { return texture(ALBEDO_MAP, at).rgb; }\n#endif\n"
+                "Material material_at",
             ),
             (MATERIAL, ALBEDO, "srgb_to_linear(read(uv))"),
         ],
@@ -142,13 +141,12 @@ def test_roles_by_names(path, role):
 
 
 def test_the_roles_of_the_project_s_samplers(root):
-    from harness import glsl, native
-    from harness.check import flow
+    from harness import glsl
+    from harness.check import flow, renderer
+    from harness.native import Stage
 
     defines = {f"HAS_{m}_MAP": "1" for m in ("ALBEDO", "ROUGHNESS", "METALNESS", "NORMAL")}
-    text = native.glsl_preprocess(
-        native.Stage.FRAGMENT, glsl.load(root / "shaders/pbr.frag", defines, [root / "shaders"]).text
-    )
-    text = re.sub(r" ?\. ?(?=[A-Za-z_])", ".", text)
+    source = glsl.load(root / "shaders/pbr.frag", defines, [root / "shaders"])
+    text = renderer.preprocess(Stage.FRAGMENT, source.text)
     assert [flow.role(text, f"map_{k}") for k in (1, 2, 3, 4)] == ["colour", "roughness", "metalness", "normal"]
     assert [max(flow.decodes(text, f"map_{k}")) for k in (1, 2, 3, 4)] == [1, 0, 0, 0]
