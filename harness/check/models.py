@@ -11,7 +11,7 @@ import numpy as np
 from .. import native, shapes
 from ..errors import NativeError, did_you_mean
 from ..native import Field, Mesh, Stage
-from ..native.mesh_data import MeshData, mesh_data
+from ..native.mesh_data import SLICES, MeshData, mesh_data
 from ..project import SHAPES
 from ..xml_lines import Element
 from . import declarations, flow, roles, samplers
@@ -19,9 +19,6 @@ from .state import PassState, State, child_text, path_of
 from .structure import check_path, read_number
 
 _FIELDS = {f.name.capitalize(): f for f in Field}
-_SLICES = dict(
-    zip(Field, (slice(0, 3), slice(3, 6), slice(6, 8), slice(8, 11), slice(11, 14), slice(14, 18)), strict=True)
-)
 #: value of the input layout -> beginnings of an attribute's words that mean it
 _NAMES = {
     "Position": ("position", "pos", "vertex"),
@@ -164,7 +161,7 @@ def _check_model(state: State, shader_pass: PassState, item: Element, attributes
 
 def _lack(data: MeshData, field: Field) -> str | None:
     """At how many vertices a mesh lacks a field; None where at none."""
-    values = data.vertices[:, _SLICES[field]]
+    values = data.vertices[:, SLICES[field]]
     if field == Field.TEXCOORD:
         zero = 0 if field in data.fields else len(values)
     else:
@@ -191,12 +188,12 @@ def tangent_agreement(data: MeshData) -> np.ndarray:
     """For each triangle the cosine between its corners' mean tangent and the direction of growing u: (n,) float64.
     Triangles without area, of the surface or of the texture, are left out."""
     corners = data.vertices[data.triangles].astype(float)
-    position, uv = corners[..., _SLICES[Field.POSITION]], corners[..., _SLICES[Field.TEXCOORD]]
+    position, uv = corners[..., SLICES[Field.POSITION]], corners[..., SLICES[Field.TEXCOORD]]
     p1, p2 = position[:, 1] - position[:, 0], position[:, 2] - position[:, 0]
     (u1, v1), (u2, v2) = (uv[:, 1] - uv[:, 0]).T, (uv[:, 2] - uv[:, 0]).T
     determinant = u1 * v2 - u2 * v1
     along_u = (p1 * v2[:, None] - p2 * v1[:, None]) * np.sign(determinant)[:, None]
-    tangent = corners[..., _SLICES[Field.TANGENT]].mean(axis=1)
+    tangent = corners[..., SLICES[Field.TANGENT]].mean(axis=1)
     length = np.linalg.norm(along_u, axis=1) * np.linalg.norm(tangent, axis=1)
     area = np.linalg.norm(np.cross(p1, p2), axis=1)
     is_sliver = area <= _SLIVER * np.maximum((p1**2).sum(axis=1), (p2**2).sum(axis=1))
@@ -207,7 +204,7 @@ def tangent_agreement(data: MeshData) -> np.ndarray:
 def handedness(data: MeshData) -> np.ndarray:
     """Sign of dot(cross(normal, tangent), bitangent) at each vertex: (n,), -1 where the texture is mirrored."""
     normal, tangent, bitangent = (
-        data.vertices[:, _SLICES[f]].astype(float) for f in (Field.NORMAL, Field.TANGENT, Field.BITANGENT)
+        data.vertices[:, SLICES[f]].astype(float) for f in (Field.NORMAL, Field.TANGENT, Field.BITANGENT)
     )
     return np.sign((np.cross(normal, tangent) * bitangent).sum(axis=1))
 

@@ -62,7 +62,10 @@ def test_a_fault_is_found_in_its_line(scene, code, edits, snippet):
 
 
 def test_a_project_without_a_camera_is_noted(scene):
-    scene.breaks([(SPRJ, '<entry type="camera"', '<entry type="camcorder"')], ("HS011", SPRJ, "<settings>"))
+    camera = (
+        '<entry type="camera" fp="false"><distance>15</distance><pitch>16</pitch><yaw>180</yaw><roll>0</roll></entry>'
+    )
+    scene.breaks([(SPRJ, camera, "")], ("HS011", SPRJ, "<settings>"))
 
 
 def test_depth_writes_that_are_restored_are_fine(scene):
