@@ -19,7 +19,7 @@ from . import renderer
 from .state import State
 
 _PASTED = re.compile(r'#include\s+(?:"([^"]+)"|<([^>]+)>)')
-_ANY = re.compile(r'[ \t]*#[ \t]*include[ \t]*(?:"([^"]+)"|<([^>]+)>)')
+_ANY = re.compile(r'[ \t]*#[ \t]*include\b[ \t]*(?:"([^"]*)"|<([^>]*)>|)')
 _EXTENSION = re.compile(r"\s*#\s*extension\s+(\w+)\s*:\s*(\w+)")
 _GUARD = re.compile(r"\s*#\s*if(def)?\b.*\bGL_GOOGLE_include_directive\b")
 _MARK = "HN_INCLUDE_"
@@ -64,7 +64,7 @@ class _Expansion:
             if not match:
                 yield text
                 continue
-            name = match[1] or match[2]
+            name = match[1] or match[2] or ""
             driver, glslang = _find(name, self.driver_dirs), _find(name, self.glslang_dirs)
             index = len(self.includes)
             self.includes.append(
@@ -96,7 +96,9 @@ def check(state: State, stage: Stage, path: Path, defines: Mapping[str, str]) ->
     reached = _reached(stage, expansion.lines, defines)
     fine = True
     for index, include in enumerate(expansion.includes):
-        wrong = _wrong(state, include, reached[index], reached) if index in reached else None
+        # glslang crashes on an empty name, so that one may stand nowhere.
+        is_seen = index in reached or not include.name
+        wrong = _wrong(state, include, reached.get(index, ""), reached) if is_seen else None
         if wrong:
             state.add(wrong[0], include.at, *wrong[1:])
             fine = False
@@ -134,6 +136,8 @@ def _reached(stage: Stage, lines: list[str], defines: Mapping[str, str]) -> dict
 def _wrong(state: State, include: _Include, behaviour: str, reached: Mapping[int, str]) -> tuple[str, str, str] | None:
     """(code, message, fix) of what is wrong with an include that is reached, the extension standing as it does."""
     name = include.name
+    if not name:
+        return "HS107", "this #include names no file", 'write #include "FILE"'
     if include.driver is None and include.glslang is None:
         looked = ", ".join(dict.fromkeys(shown_path(d) + os.sep for d in state.include_dirs))
         return (

@@ -69,6 +69,8 @@ def test_a_cascade_of_errors_in_a_line_is_one_finding(scene):
     ("code", "edits", "file", "snippet"),
     [
         ("HS107", [(FRAG, '"normal_map.glsl"', '"normal_mop.glsl"')], FRAG, "normal_mop"),
+        ("HS107", [(BACK, INCLUDE, f'{INCLUDE}\n#include ""')], BACK, '#include ""'),
+        ("HS107", [(BACK, INCLUDE, f"{INCLUDE}\n#include <>")], BACK, "#include <>"),
         ("HS109", [(BACK, INCLUDE, f"  {INCLUDE}")], BACK, INCLUDE),
         ("HS109", [(BACK, INCLUDE, '# include "color.glsl"')], BACK, "# include"),
         ("HS109", [(BACK, "#extension GL_GOOGLE_include_directive : enable", "")], BACK, INCLUDE),
