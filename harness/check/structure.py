@@ -71,6 +71,7 @@ def check(state: State) -> None:
             )
         )
     _check_camera(state)
+    _check_include_paths(state)
 
 
 def check_reader(state: State) -> None:
@@ -270,6 +271,19 @@ def _check_camera(state: State) -> None:
             'add <entry type="camera" fp="false"> with distance, pitch, yaw and roll to the settings',
             "note",
         )
+
+
+def _check_include_paths(state: State) -> None:
+    for entry in state.root.nested("settings", "entry"):
+        for path in entry.all("path") if entry.attributes.get("type") == "ipaths" else ():
+            if path.text.startswith("/"):
+                state.add(
+                    "HS009", path, f'the include path "{path.text}" is absolute', "write it from the project's folder"
+                )
+            elif not (state.folder / path.text).is_dir():
+                state.add("HS006", path, f'there is no folder "{path.text}" to include from', "correct or remove it")
+            else:
+                check_path(state, path, path.text)
 
 
 def check_path(state: State, at: Element, text: str) -> None:

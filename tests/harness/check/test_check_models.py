@@ -28,9 +28,9 @@ def pack(root):
 
 @pytest.fixture
 def square(scene, pack):
-    """Puts a square into the place of the painted teapot: u toward +x, and ``tangent``."""
+    """Puts a square into the place of the painted teapot: u toward +x, and ``tangent`` but for ``without`` corners."""
 
-    def put(tangent: tuple[float, float, float, float], *, u: int = 1) -> None:
+    def put(tangent: tuple[float, float, float, float], *, u: int = 1, without: int = 0) -> None:
         corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
         attributes = {
             "POSITION": corners,
@@ -38,6 +38,7 @@ def square(scene, pack):
             "TANGENT": np.tile(np.array(tangent, np.float32), (4, 1)),
             "TEXCOORD_0": corners[:, :2] * np.array([u, -1], np.float32) / 2 + np.float32(0.5),
         }
+        attributes["TANGENT"][:without] = 0
         triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint16)
         scene.write("square/square.glb", pack("square", attributes, triangles, {}))
         scene.replace(SPRJ, TEAPOT, "square/square.glb")
@@ -94,6 +95,11 @@ def test_a_mirrored_texture_whose_handedness_is_not_read(scene, square):
 
 def test_a_tangent_of_zero(scene, square):
     square((0, 0, 0, 1))
+    scene.breaks([], ("HS502", SPRJ, "square.glb"))
+
+
+def test_a_tangent_of_zero_at_one_corner(scene, square):
+    square((1, 0, 0, 1), without=1)
     scene.breaks([], ("HS502", SPRJ, "square.glb"))
 
 

@@ -53,6 +53,15 @@ def test_stages_that_do_not_link(scene):
     )
 
 
+def test_blank_lines_above_the_version_are_a_warning(scene):
+    from harness.check import check
+
+    scene.replace(BACK, "#version 330\n", "\n#version 330\n")
+    assert [f.severity for f in check(scene.project)] == ["warning"]
+    scene.replace(BACK, "\n#version 330\n", "// A gradient.\n#version 330\n")
+    assert [f.severity for f in check(scene.project)] == ["error"]
+
+
 def test_a_shader_in_another_language_is_left_out(scene):
     scene.write("shaders/backdrop.hlsl", "float4 main() : SV_Target { return 1; }\n")
     scene.breaks([(SPRJ, "backdrop.frag", "backdrop.hlsl")], ("HS112", SPRJ, "backdrop.hlsl"))
@@ -109,11 +118,12 @@ def test_an_include_without_an_end_of_line(scene):
 
 
 def test_an_include_that_lies_beside_the_shader_alone(scene):
-    scene.write("lib/tone.glsl", "float tone(float x) { return x; }\n")
+    scene.write("lib/tone.glsl", '#include "gone.glsl"\n')
     scene.write("lib/backdrop.frag", (scene.folder / BACK).read_text())
     scene.breaks(
         [(SPRJ, BACK, "lib/backdrop.frag"), ("lib/backdrop.frag", INCLUDE, f'{INCLUDE}\n#include "tone.glsl"')],
         ("HS108", "lib/backdrop.frag", "tone.glsl"),
+        ("HS107", "lib/tone.glsl", "gone.glsl"),
     )
 
 
@@ -134,6 +144,7 @@ def test_includes_that_are_not_reached_may_take_any_form(scene):
     [
         "float k = 0.0;\n    while (k < 1.0) { // here\n        k += 0.0;\n    }",
         "for (int k = 0; k < 2; ) { // here\n    }",
+        "float k = 4.0;\n    while (k > 1.0) { // here\n        k -= 0.0;\n    }",
         "while (true) { // here\n    }",
         "float k = 0.0;\n    do {\n    } while (k < 1.0); // here",
     ],

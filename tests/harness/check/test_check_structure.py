@@ -30,6 +30,7 @@ def test_the_copy_has_no_findings(scene):
         ("HS001", [(SPRJ, '<?xml version="1.0"?>\n', '<!DOCTYPE project [<!ENTITY a "b">]>\n')], "<!DOCTYPE"),
         ("HS002", [(SPRJ, 'name="Painted teapot"', 'name="SCREEN"')], 'name="SCREEN"'),
         ("HS002", [(SPRJ, 'name="Painted teapot"', 'name="metals"')], 'name="metals"'),
+        ("HS002", [(SPRJ, QUAD, f"{QUAD}\n{QUAD.replace('/type>', '/type><x>0</x>')}")], "<x>0</x>"),
         ("HS003", [(SPRJ, "<rendertexture />", '<rendertexture name="shadow" />')], 'name="shadow"'),
         ("HS004", [(SPRJ, "<roll>0</roll>", "")], 'type="camera"'),
         ("HS004", with_object('<object type="rendertexture" name="rt" />'), 'name="rt"'),
@@ -86,6 +87,19 @@ def test_all_faults_are_found_at_once(scene):
         ("HS011", SPRJ, "<distance>80<"),
         ("HS103", "shaders/backdrop.frag", "smoothstop"),
         ("HS103", "shaders/normal_map.glsl", "normale;"),
+    )
+
+
+def test_the_findings_in_the_project_come_first(scene):
+    scene.write("a/backdrop.frag", (scene.folder / "shaders/backdrop.frag").read_text())
+    scene.breaks(
+        [
+            (SPRJ, "shaders/backdrop.frag", "a/backdrop.frag"),
+            ("a/backdrop.frag", "smoothstep", "smoothstop"),
+            (SPRJ, "<distance>15<", "<distance>80<"),
+        ],
+        ("HS011", SPRJ, "<distance>80<"),
+        ("HS103", "a/backdrop.frag", "smoothstop"),
     )
 
 

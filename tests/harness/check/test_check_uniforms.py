@@ -119,6 +119,21 @@ def test_any_number_sets_a_bool(scene):
     scene.breaks([*declared("uniform bool gain;", "float(gain)"), variable(GAIN)])
 
 
+@pytest.mark.parametrize("name", ["gains", "gains[1]"])
+def test_of_an_array_the_first_element_alone_is_set(scene, name):
+    scene.breaks(
+        [
+            *declared("uniform float gains[1];", "gains[0]"),
+            variable(GAIN.replace("gain", "gains[0]")),
+            variable(GAIN.replace("gain", name)),
+        ],
+        ("HS203", SPRJ, f'"{name}"'),
+    )
+    from harness.check import check
+
+    assert "gains[0]" in check(scene.project)[0].message
+
+
 def test_members_of_structs_in_arrays_are_set(scene):
     scene.breaks(
         [
