@@ -112,9 +112,9 @@ def _paste(
     included = set()
     folders = [*include_dirs, path.parent] if library else include_dirs
     pattern = _LIBRARY_INCLUDE if library else _INCLUDE
-    lines = _read(path)
+    lines, shown = _read(path), shown_path(path)
     for number, text in enumerate(_joined(lines) if library else lines, 1):
-        origin = shown_path(path), number
+        origin = shown, number
         match = pattern.match(text)
         if not match:
             yield text, origin, None

@@ -21,7 +21,8 @@ _ENCODING = re.compile(r"(?:vec[34]\s*\(\s*)?(?:1\.?0*\s*/\s*(?:2\.[1-5]\d*|\w*g
 _DECODER_NAME = re.compile(r"srgb_?to|from_?srgb|to_?linear|linearize|degamma|decode_?(srgb|gamma|color|colour)", re.I)
 _ENCODER_NAME = re.compile(r"(to|encode)_?(srgb|gamma|display)|linear_?to_?srgb|gamma_?(correct|encode)", re.I)
 _LAST_WORD = re.compile(r"(\w+)\s*$")
-_DEEPEST, _LONGEST = 5, 256  # calls within calls that are followed; characters of a name
+_LONGEST = 256  # characters of a name
+_ENOUGH = 3  # times that a colour is decoded: more say nothing more
 
 
 @dataclass(frozen=True)
@@ -111,12 +112,19 @@ def lights(text: str) -> bool:
 
 
 @lru_cache(maxsize=64)
-def decodes(text: str, sampler: str) -> tuple[int, ...]:
-    """How many times the colours of a sampler are decoded, for each way that they go; () where it is not sampled."""
-    ways: list[int] = []
-    for position in _samples(text, sampler):
-        ways += _follow(text, position, 0, frozenset(), 0)
-    return tuple(ways)
+def decodes(text: str, sampler: str) -> int | None:
+    """How many times the colours of a sampler are decoded, on the way where most; None where it is not sampled."""
+    todo = [(position, 0) for position in _samples(text, sampler)]
+    seen, most = set(todo), 0
+    if not todo:
+        return None
+    while todo:
+        count, reached_next = _follow(text, *todo.pop())
+        most = max(most, count)
+        new = {(position, n) for position, n in reached_next if n <= _ENOUGH} - seen
+        seen |= new
+        todo += new
+    return most
 
 
 def role(text: str, sampler: str) -> str | None:
@@ -170,41 +178,33 @@ def _argument(text: str, start: int, position: int) -> int:
     return count
 
 
-def _follow(text: str, position: int, count: int, seen: frozenset, depth: int) -> list[int]:
-    """The numbers of decodings on the ways of the value at a position, after ``count`` of them."""
-    if position in seen or depth > _DEEPEST:
-        return [count]
-    seen = seen | {position}
-    ways: list[int] = []
+def _follow(text: str, position: int, count: int) -> tuple[int, list[tuple[int, int]]]:
+    """How many times the value at a position is decoded when its statement ends, having been so ``count`` times, and
+    where it goes from there: (position, times)."""
+    onward: list[tuple[int, int]] = []
     own = {f.name: f for f in functions(text)}
-    decoders = _decoders(text)
     for name, bracket in _calls(text, position):
-        if name in decoders or (name == "pow" and _base(text, bracket, _DECODING) is not None):
+        if name in _decoders(text) or (name == "pow" and _base(text, bracket, _DECODING) is not None):
             count += 1
         elif name in own:
             k = _argument(text, bracket, position)
             if k < len(own[name].parameters):
-                ways += _uses(text, own[name], own[name].parameters[k], own[name].start, count, seen, depth)
-    target = _target(text, position)
+                onward += [(at, count) for at in _uses(text, own[name], own[name].parameters[k], own[name].start)]
     inside = next((f for f in functions(text) if f.start <= position < f.end), None)
     if inside is None:
-        return ways or [count]
+        return count, onward
+    target = _target(text, position)
     if target == "return":
         for match in re.finditer(rf"\b{inside.name}\s*\(", text):
-            if not inside.start <= match.start() < inside.end and any(
-                f.start <= match.start() < f.end for f in functions(text)
-            ):
-                ways += _follow(text, match.start(), count, seen, depth + 1)
+            if any(f.start <= match.start() < f.end for f in functions(text) if f is not inside):
+                onward.append((match.start(), count))
     elif target and "." not in target.replace(".rgb", "").replace(".xyz", ""):
-        end = text.find(";", position)
         name = re.match(r"\w+", target)[0]
-        ways += _uses(text, inside, name, end, count, seen, depth)
-    return ways or [count]
+        onward += [(at, count) for at in _uses(text, inside, name, text.find(";", position))]
+    return count, onward
 
 
-def _uses(text: str, function: Function, name: str, start: int, count: int, seen: frozenset, depth: int) -> list[int]:
-    """The ways from where a function reads one of its variables, from ``start`` on."""
-    ways: list[int] = []
-    for match in re.finditer(rf"(?<![\w.]){name}\b(?!\s*(?:\.\w+\s*)?=(?!=))", text[start : function.end]):
-        ways += _follow(text, start + match.start(), count, seen, depth + 1)
-    return ways
+def _uses(text: str, function: Function, name: str, start: int) -> list[int]:
+    """Where a function reads one of its variables, from ``start`` on."""
+    pattern = rf"(?<![\w.]){name}\b(?!\s*(?:\.\w+\s*)?=(?!=))"
+    return [start + match.start() for match in re.finditer(pattern, text[start : function.end])]

@@ -179,7 +179,7 @@ def _reads_normal_map(shader_pass: PassState) -> bool:
     text = shader_pass.preprocessed.get(Stage.FRAGMENT, "")
     for bound, sampler in samplers.given(shader_pass):
         is_normal = roles.NORMAL in (roles.of_file(bound.path or ""), samplers.wanted_role(shader_pass, sampler))
-        if is_normal and flow.decodes(text, sampler):
+        if is_normal and flow.decodes(text, sampler) is not None:
             return True
     return False
 

@@ -130,16 +130,16 @@ def _check_flip(state: State, shader_pass: PassState, bound: Bound) -> None:
 def _check_colors(state: State, shader_pass: PassState, bound: Bound, sampler: str) -> None:
     """sRGB decoded never, twice, or where there is none."""
     text = shader_pass.preprocessed[Stage.FRAGMENT]
-    role, ways = roles.of_file(bound.path), flow.decodes(text, sampler)
-    if role is None or not ways or samplers.wanted_role(shader_pass, sampler) not in (role, None):
+    role, times = roles.of_file(bound.path), flow.decodes(text, sampler)
+    if role is None or times is None or samplers.wanted_role(shader_pass, sampler) not in (role, None):
         return
     what = f'"{bound.path}", by its name a {role} map, read by "{sampler}" of pass "{shader_pass.name}"'
     at = _first_use(shader_pass, sampler)
-    if role != roles.COLOR and max(ways) > 0:
+    if role != roles.COLOR and times > 0:
         state.add("HS405", at, f"{what}, is decoded from sRGB", "take its numbers as they are")
-    elif role == roles.COLOR and max(ways) > 1:
-        state.add("HS406", at, f"{what}, is decoded from sRGB {max(ways)} times", "decode it once")
-    elif role == roles.COLOR and max(ways) == 0 and (flow.encodes(text) or flow.lights(text)):
+    elif role == roles.COLOR and times > 1:
+        state.add("HS406", at, f"{what}, is decoded from sRGB {times} times", "decode it once")
+    elif role == roles.COLOR and times == 0 and (flow.encodes(text) or flow.lights(text)):
         state.add(
             "HS404",
             at,
@@ -159,7 +159,7 @@ def _check_green(state: State, shader_pass: PassState, bound: Bound, sampler: st
     name = os.path.basename(bound.path)
     is_dx, is_gl = bool(_DX_IN_NAME.search(name)), bool(_GL_IN_NAME.search(name))
     text = shader_pass.preprocessed[Stage.FRAGMENT]
-    if is_dx == is_gl or not flow.decodes(text, sampler):
+    if is_dx == is_gl or flow.decodes(text, sampler) is None:
         return
     turns = any(
         _TURNS_GREEN.search(text[f.start : f.end]) for f in flow.functions(text) if f.name in flow.reached(text)

@@ -149,4 +149,15 @@ def test_the_roles_of_the_project_s_samplers(root):
     source = glsl.load(root / "shaders/pbr.frag", defines, [root / "shaders"])
     text = renderer.preprocess(Stage.FRAGMENT, source.text)
     assert [flow.role(text, f"map_{k}") for k in (1, 2, 3, 4)] == ["colour", "roughness", "metalness", "normal"]
-    assert [max(flow.decodes(text, f"map_{k}")) for k in (1, 2, 3, 4)] == [1, 0, 0, 0]
+    assert [flow.decodes(text, f"map_{k}") for k in (1, 2, 3, 4)] == [1, 0, 0, 0]
+
+
+def test_long_ways_of_a_colour_are_followed_in_time():
+    """Each line reads the variable of the line before twice: ways grow as powers of two, places do not."""
+    from harness.check import flow
+
+    lines = "".join(f"vec3 c{k + 1} = c{k} + c{k} * 0.5;\n" for k in range(60))
+    text = f"void main() {{\nvec3 c0 = texture(map, uv).rgb;\n{lines}vec3 d = srgb_to_linear(c60);\n}}\n"
+    text = "vec3 srgb_to_linear(vec3 c) { return c * c; }\n" + text
+    assert flow.decodes(text, "map") == 1
+    assert flow.decodes(text, "other") is None
