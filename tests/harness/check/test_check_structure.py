@@ -55,6 +55,9 @@ def test_the_copy_has_no_findings(scene):
             [(SPRJ, QUAD, f'{QUAD}\n<item name="Off" type="renderstate"><depthmask>false</depthmask></item>')],
             "Off",
         ),
+        ("HS006", [(SPRJ, "<path>shaders</path>", "<path>shaders</path>\n<path>shadows</path>")], "shadows"),
+        ("HS009", [(SPRJ, "<path>shaders</path>", "<path>shaders</path>\n<path>../scene</path>")], "../scene"),
+        ("HS009", [(SPRJ, "<path>shaders</path>", "<path>shaders</path>\n<path>/usr</path>")], "/usr"),
         ("HS011", [(SPRJ, "<distance>15<", "<distance>80<")], "<distance>80<"),
     ],
 )

@@ -34,6 +34,19 @@ NORMAL_BIND = '<bind slot="3" name="Painted metal" />'
             MATERIAL,
             "texture(ALBEDO",
         ),
+        (
+            "HS406",
+            [
+                (
+                    MATERIAL,
+                    "Material material_at",
+                    "vec3 f(vec3 x) { return srgb_to_linear(x); }\nMaterial material_at",
+                ),
+                (MATERIAL, ALBEDO, f"f({ALBEDO})"),
+            ],
+            MATERIAL,
+            "texture(ALBEDO",
+        ),
         ("HS407", [(SPRJ, f"{SET}NormalGL", f"{SET}NormalDX")], SPRJ, NORMAL_BIND),
         (
             "HS407",
@@ -99,6 +112,29 @@ def test_a_fault_is_found_in_its_line(scene, code, edits, file, snippet):
 )
 def test_what_is_done_in_another_way_is_fine(scene, edits):
     scene.breaks(edits)
+
+
+def test_a_picture_that_is_shown_as_it_is_needs_no_decoding(scene):
+    """The included color.glsl could encode, but nothing calls it."""
+    back = "shaders/backdrop.frag"
+    scene.write("textures/Sky_Color.png", (scene.folder / f"{SET}Color.png").read_bytes())
+    text = (scene.folder / back).read_text()
+    shown = "    color = texture(sky, vec2(height)) + 0.1 * vec4(top_radiance + bottom_radiance, 0.0);\n}\n"
+    scene.write(back, text[: text.index("    color =")] + shown)
+    sky = '<object type="texture" path="textures/Sky_Color.png"><bind slot="0" name="Backdrop" /></object>'
+    scene.breaks(
+        [
+            (back, "in float height;", "in float height;\nuniform sampler2D sky;"),
+            (SPRJ, "</objects>", f"{sky}\n</objects>"),
+        ]
+    )
+    scene.replace(
+        back, "color = texture(sky, vec2(height))", "color.rgb = linear_to_srgb(texture(sky, vec2(height)).rgb)"
+    )
+    scene.replace(
+        back, " + 0.1 * vec4(top_radiance + bottom_radiance, 0.0)", " + 0.1 * (top_radiance + bottom_radiance)"
+    )
+    assert [code for code, _, _ in scene.found()] == ["HS404"]
 
 
 def test_a_truncated_file(scene):
