@@ -9,7 +9,6 @@ from pathlib import PurePath
 
 from .findings import RULES, SEVERITIES, Finding
 
-FORMATS = ("text", "json", "sarif")
 SCHEMA_VERSION = 1  # of the JSON; grows when a member changes its meaning or goes
 _SARIF_SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _COLORS = {"error": "31", "warning": "33", "note": "36"}

@@ -9,7 +9,7 @@ from functools import lru_cache
 from ..native import Stage
 from . import declarations, flow, renderer, roles
 from .declarations import Declared
-from .state import Bound, PassState, State
+from .state import Bound, PassState, State, flag
 
 _CUBE = re.compile(r"samplerCube")
 
@@ -139,7 +139,7 @@ def _check_active(state: State, shader_pass: PassState, real: dict[str, Declared
                 f"bound ({there})",
                 f'bind a texture to pass "{shader_pass.name}" in a slot after the others',
             )
-        elif bool(_CUBE.search(real[name].type)) != (bound[k].element.attributes.get("cube", "")[:1] in tuple("1tTyY")):
+        elif bool(_CUBE.search(real[name].type)) != flag(bound[k].element, "cube"):
             kind = "a cube map" if _CUBE.search(real[name].type) else "no cube map"
             state.add(
                 "HS308",
