@@ -20,6 +20,7 @@ VERSION = "#version 330"  # given to files that state none: libraries, which are
 # As SHADERed: in column 0, "x" and <x> alike, whatever follows the closing mark.
 _INCLUDE = re.compile(r'#include\s+(?:"([^"]+)"|<([^>]+)>)')
 _LIBRARY_INCLUDE = re.compile(r'[ \t]*#[ \t]*include\s*(?:"([^"]+)"|<([^>]+)>)')
+_NAMELESS_INCLUDE = re.compile(r'[ \t]*#[ \t]*include\s*(?:""|<>)')
 _GLSLANG_LINE = re.compile(r"^(?:ERROR|WARNING): (?:\d+|[^:]*):(\d+): (.*)$")
 _DRIVER_LINE = re.compile(r"^\d+[:(](\d+)(?:\(\d+\)\s*:|\)\s*:|:)\s*(.*)$")
 
@@ -61,6 +62,10 @@ class Source:
             shown.append(f"... and {len(found) - ERRORS_SHOWN} more")
         file, number = self.origin(found[0][0])
         return GlslError("\n".join(shown).removeprefix(f"{file}:{number}: "), file, number)
+
+    def errors(self, log: str) -> list[tuple[int, str]]:
+        """Each error of that log by itself: (line of ``text``, what the compiler says), 0 for a linker's of no line."""
+        return list(_messages(log)) or [(0, log.strip())]
 
 
 def _messages(log: str) -> Iterator[tuple[int, str]]:
@@ -108,10 +113,13 @@ def _paste(
     included = set()
     folders = [*include_dirs, path.parent] if library else include_dirs
     pattern = _LIBRARY_INCLUDE if library else _INCLUDE
-    lines = _read(path)
+    lines, shown = _read(path), shown_path(path)
     for number, text in enumerate(_joined(lines) if library else lines, 1):
-        origin = shown_path(path), number
+        origin = shown, number
         match = pattern.match(text)
+        if _NAMELESS_INCLUDE.match(text):
+            yield "#error no name", origin, "an include without a name"  # glslang 12 aborts on it
+            continue
         if not match:
             yield text, origin, None
             continue

@@ -99,6 +99,13 @@ def test_a_library_may_indent_its_includes(write, line):
     assert shader(folder / "main.glsl").f() == 2
 
 
+@pytest.mark.parametrize("line", ['#include ""', "#include <>", '  # include ""'])
+def test_an_include_without_a_name_is_an_error(write, line):
+    folder = write(main=f"float f() {{ return 1.0; }}\n{line}\n")
+    with pytest.raises(GlslError, match="main.glsl:2: an include without a name"):
+        shader(folder / "main.glsl")
+
+
 def test_a_library_may_continue_its_lines_after_a_backslash(write):
     folder = write(main="#define TWICE(x) \\\n  ((x) + \\\n  (x))\nfloat f(float x) { return TWICE(x); }\n")
     f = shader(folder / "main.glsl").f
