@@ -8,14 +8,16 @@ import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from functools import partial
 from pathlib import Path
 
 import pytest
 
-from harness import jobs
+from harness import jobs, shader
 from harness.errors import CallError, HarnessError
+from harness.hunt import ISLAND, hunt
 
 # ---- The work: functions of this module, which the workers import ----------------------------------------------------
 
@@ -268,6 +270,19 @@ def test_a_cluster_with_a_worker_killed_in_the_middle_computes_the_same(tmp_path
                 killed.wait()
     assert killed.returncode == -signal.SIGKILL
     assert there == here and len(there) == 24
+
+
+def test_a_hunt_on_a_cluster_that_loses_a_worker_finds_the_same(tmp_path, cluster):
+    file = tmp_path / "wave.glsl"
+    file.write_text("float wave(float x) { return cos(x * 40.0) - 0.999; }\n")
+    function, what = shader(file).wave, ({"x": "[0,1]"}, ["negative", "ulp"])
+    here = hunt(function, *what, samples=6 * ISLAND, seed=3, workers=1)
+    killed = cluster.worker("--nthreads", "1")
+    cluster.worker("--nthreads", "1")
+    threading.Timer(1.0, killed.kill).start()
+    there = hunt(function, *what, samples=6 * ISLAND, seed=3, scheduler=cluster.address)
+    assert [(f.score, f.inputs.arguments()) for f in there] == [(f.score, f.inputs.arguments()) for f in here]
+    killed.wait()
 
 
 def test_items_for_a_cluster_are_read_only_as_fast_as_they_are_worked_through(cluster):
