@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from harness import render
+from harness import render, shader
 
 
 @pytest.fixture
@@ -28,6 +28,20 @@ def test_its_python_runs(root, readme, monkeypatch):
         exec(block, names)
     assert len(blocks) == 2
     assert names["picture"].shape == (180, 320, 4)
+
+
+def test_its_session_prints_what_it_shows(root, readme, monkeypatch):
+    monkeypatch.chdir(root)
+    typed, shown = re.search(r"```pycon\n>>> ([^\n]*)\n(.*?)```", readme, re.DOTALL).groups()
+    assert f"{eval(typed, {'shader': shader})}\n" == shown
+
+
+def test_its_failing_test_is_the_documents(root, readme):
+    """docs/testing.md has it whole, and is held to what happens."""
+    document = (root / "docs" / "testing.md").read_text()
+    block = re.search(r"```\n(def test_sag.*?)```", readme, re.DOTALL)[1]
+    for line in block.split("\n"):
+        assert line.partition("  #")[0].removesuffix(": ...") in document
 
 
 def test_its_call_prints_what_it_shows(root, readme):
