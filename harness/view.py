@@ -288,11 +288,11 @@ def view(path: str | Path, size: tuple[int, int], frames: int | None = None) -> 
     """Shows the project until its window is closed. HarnessError where there is no display or no project."""
     from . import native
 
-    native.choose_backend("glfw")
-    native.open_context()
     project = Path(path)
     if not project.is_file():
         sprj.read(project)  # says so before a window opens
+    native.choose_backend("glfw")
+    native.open_context()
     window = Window(project.name, size)
     Viewer(project, window, size).run(frames)
 
