@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import NoReturn
 
-from . import glsl
-from .errors import GlslError
+from . import glsl, sprj
+from .errors import GlslError, HarnessError
 from .project import Buffer, ComputePass, CubeMap, Model, Project, Shader, TextureObject
 
 #: between two looks
@@ -53,6 +55,20 @@ class Watch:
         different = now != self._stamps
         self._stamps = now
         return different
+
+
+def follow(path: str | os.PathLike, work: Callable[[], object]) -> NoReturn:
+    """Does the work now, and again whenever a file of the project in ``path`` changes."""
+    watched = {Path(path)}
+    while True:
+        try:
+            watched = files(sprj.read(path))
+        except HarnessError:
+            pass  # which the work says; what was watched so far may mend it
+        watch = Watch(watched)
+        work()
+        while not watch.changed():
+            time.sleep(SECONDS)
 
 
 def _stamp(path: str | os.PathLike) -> tuple[int, int, int] | None:

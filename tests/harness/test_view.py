@@ -111,6 +111,16 @@ def test_a_number_steps_its_ladder(session):
     assert session.pixel[0] == 0 and session.pane.title == "project.sprj"
 
 
+def test_a_rung_that_does_not_compile_is_told_and_not_taken(tmp_path):
+    text = LADDER + "#if LEVEL == L_HIGH\nwrong\n#endif\n"
+    session = Session(write_quad(tmp_path, "color.r = float(LEVEL) + 0.2;", text))
+    session.press("1")
+    assert session.pixel[0] == 51
+    assert session.pane.title.startswith("project.sprj - ERROR quad.frag:9: ")
+    session.press("E")  # with the rung that there was, which is the reference
+    assert session.pixel == [0, 0, 0] and "ERROR" not in session.pane.title
+
+
 def test_keys_of_ladders_and_features_that_are_not_there_do_nothing(session):
     assert not session.press("2") and not session.press(290)
 
