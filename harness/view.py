@@ -39,7 +39,7 @@ class Viewer:
         self._size = size
         self._changes = view_macros.Changes()
         self._shows_error = False
-        self._note = ""
+        self._note = self._title = ""
         self._buttons: dict[int, tuple[float, float]] = {}
         self._pointer = (0.0, 0.0)
         self._arrows: set[int] = set()
@@ -141,10 +141,8 @@ class Viewer:
                 _say(f"{name}: {'flipped' if name in self._changes.flipped else 'as in the project'}")
         elif ladder is not None and ladder < len(self._macros.ladders):
             rungs = self._macros.ladders[ladder]
-            if self._try(
-                self._changes.step(rungs, view_macros.own_rung(self._project, rungs)),
-                self._shows_error,
-            ):
+            own = view_macros.own_rung(self._project, rungs)
+            if self._try(self._changes.step(rungs, own), self._shows_error):
                 _say(f"{rungs.name}: {self._changes.rungs.get(rungs.name, 'as in the project')}")
         elif action is not None:
             self._do(action)
@@ -268,7 +266,7 @@ class Viewer:
     def _show_title(self) -> None:
         parts = [self.path.name, str(self._changes), self._note]
         title = " - ".join(part for part in parts if part)
-        if title != getattr(self, "_title", None):
+        if title != self._title:
             self._title = title
             self._window.set_title(title)
 
