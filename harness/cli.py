@@ -18,11 +18,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         if options.time_limit is None:
             return _reported(options)
-        return worker.run(lambda: _reported(options), options.time_limit)
+        if getattr(options, "watch", False):
+            from .watch import follow
+
+            follow(options.project, lambda: _in_worker_reported(options))
+        return _in_worker(options)
     except HarnessError as error:
         return _report(error)
     except KeyboardInterrupt:
         return 130
+
+
+def _in_worker(options: argparse.Namespace) -> int:
+    return worker.run(lambda: _reported(options), options.time_limit)
+
+
+def _in_worker_reported(options: argparse.Namespace) -> int:
+    try:
+        return _in_worker(options)
+    except HarnessError as error:  # the worker's end: out of time, crashed
+        return _report(error)
 
 
 def _reported(options: argparse.Namespace) -> int:

@@ -38,7 +38,8 @@ class Stage:
         self._render_textures = {t.name: t for t in project.render_textures}
         self._targets: dict[str | None, Target] = {None: self.window} | self._make_targets()
         self._joined = {p.shader_pass.name: self._join(p.shader_pass) for p in passes if _draws(p)}
-        self._system = System(project, size)
+        #: the values that SHADERed itself gives to variables
+        self.system = System(project, size)
         self._memory = Memory()
         self._depth_write = True
         for unit in range(_UNITS):
@@ -105,7 +106,7 @@ class Stage:
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")
     def draw(self, moment: Moment) -> None:
         """Draws one frame."""
-        self._system.begin(moment)
+        self.system.begin(moment)
         clears = _Clears(self._project)
         for prepared in self._passes:
             if isinstance(prepared.shader_pass, ComputePass):
@@ -124,7 +125,7 @@ class Stage:
 
     def _dispatch(self, prepared: PreparedPass) -> None:
         self._bind(prepared)
-        prepared.uniforms.bind(None, self._system, self._memory)
+        prepared.uniforms.bind(None, self.system, self._memory)
         native.dispatch(prepared.program, prepared.shader_pass.groups)
 
     def _draw_pass(self, prepared: PreparedPass, clears: _Clears) -> None:
@@ -137,11 +138,11 @@ class Stage:
             target.clear_depth(self._depth_write)
         for index, color in clears.colors(shader_pass.targets, self._render_textures):
             target.clear_color(index, color)
-        self._system.set_size(self._size_of(shader_pass))
+        self.system.set_size(self._size_of(shader_pass))
         self._bind(prepared)
         for item in prepared.items:
-            self._system.set_item(item.item)
-            prepared.uniforms.bind(item.item, self._system, self._memory)
+            self.system.set_item(item.item)
+            prepared.uniforms.bind(item.item, self.system, self._memory)
             self._draw_item(prepared, item, target)
         self._depth_write = shader_pass.end_state.depth_write
 

@@ -7,11 +7,12 @@ without gamma or tone mapping: those are the shaders' business.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 
 from . import sprj
+from .camera import Camera
 from .errors import ProjectError
 from .frames import Stage
 from .native import Target
@@ -39,9 +40,11 @@ class Renderer:
         *,
         until_pass: str | None = None,
         keep_going: bool = False,
+        change: Callable[[Project], Project] | None = None,
     ):
         """``size``: width and height of the picture. ``supersample`` n renders n times as wide and high, and every
         pixel is the rounded mean of its n x n final 8-bit values. ``until_pass`` is the last pass that is drawn.
+        ``change`` makes the project that is drawn of the one that was read.
 
         HarnessError for what is wrong in the project; with ``keep_going`` it costs the part that it is about, and is
         in ``errors``.
@@ -51,8 +54,34 @@ class Renderer:
         project = sprj.read(project_path, self._traps)
         if until_pass is not None:
             project = _until(project, until_pass)
-        window = size[0] * supersample, size[1] * supersample
-        self._stage = Stage(project, prepare(project, self._traps), window, self._traps)
+        if change is not None:
+            project = change(project)
+        self.project = project
+        self._passes = prepare(project, self._traps)
+        self._stage = self._make_stage()
+
+    def _make_stage(self) -> Stage:
+        width, height = self.size
+        window = width * self._supersample, height * self._supersample
+        return Stage(self.project, self._passes, window, self._traps)
+
+    def resize(self, size: tuple[int, int]) -> None:
+        """Another size of the picture, from the next frame on. What frames have left so far is gone."""
+        self.size = _check_size(size, self._supersample)
+        self._stage = self._make_stage()
+
+    def look(self, camera: Camera) -> None:
+        """Another camera than the project's, from the next frame on."""
+        self._stage.system.look(camera)
+
+    def give(self, values: Mapping[str, np.ndarray]) -> None:
+        """What mouse and keys are from the next frame on: values of project.SYSTEM_TYPES by name."""
+        self._stage.system.give(values)
+
+    @property
+    def window(self) -> Target:
+        """What the last frame was drawn to, supersampled."""
+        return self._stage.window
 
     @property
     def warnings(self) -> list[Warning]:

@@ -1,10 +1,11 @@
 """The values that SHADERed itself gives to variables: time, camera, target, item; of this frame and of the last.
 
-Mouse, keys and picking are at rest: without a window nobody moves them.
+Mouse, keys and picking are at rest unless they are given: without a window nobody moves them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,7 +56,15 @@ class System:
     """
 
     def __init__(self, project: Project, size: tuple[int, int]):
-        camera = project.settings.camera
+        self._given = dict(_AT_REST)
+        self.look(project.settings.camera)
+        self._size = self._last_size = size
+        self._moment, self._last_frame, self._last_delta = Moment(), 0, 0.0
+        self._matrices: dict[str, np.ndarray] = {}
+        self._last_matrices: dict[str, np.ndarray] = {}
+
+    def look(self, camera: cameras.Camera) -> None:
+        """Looks through this camera from here on."""
         position = cameras.position(camera)
         self._view = cameras.view(camera)
         self._of_camera = {
@@ -65,10 +74,10 @@ class System:
             "CameraDirection3": cameras.direction(camera),
         }
         self._of_size: dict[tuple[int, int], dict[str, np.ndarray]] = {}
-        self._size = self._last_size = size
-        self._moment, self._last_frame, self._last_delta = Moment(), 0, 0.0
-        self._matrices: dict[str, np.ndarray] = {}
-        self._last_matrices: dict[str, np.ndarray] = {}
+
+    def give(self, values: Mapping[str, np.ndarray]) -> None:
+        """What mouse and keys are from here on: values that are at rest otherwise, by name."""
+        self._given.update(values)
 
     def begin(self, moment: Moment) -> None:
         """Begins a frame: what was this frame's so far is the last one's now."""
@@ -89,8 +98,8 @@ class System:
 
         In the first frame SHADERed takes zeros for the matrices of the items before; the rest is as in that frame.
         """
-        if name in _AT_REST:
-            return _AT_REST[name]
+        if name in self._given:
+            return self._given[name]
         if name in self._of_camera:
             return self._of_camera[name]
         match name:

@@ -21,7 +21,8 @@ if [ "${1:-}" = test ] || [ "${1:-}" = bench ]; then
     packages+=("libgl1-mesa-dri|the driver under EGL and windows, to compare with")
 fi
 if [ "${1:-}" = test ]; then
-    packages+=("xvfb|a display for the windows of tests" "xauth|lets programs onto it")
+    packages+=("xvfb|a display for the windows of tests" "xauth|lets programs onto it"
+        "xdotool|moves the mouse and types there")
 fi
 if [ "${1:-}" = cost ]; then
     packages+=("libvulkan-dev|asks a driver what it compiles" "mesa-vulkan-drivers|compiles for GPUs that are not there")

@@ -46,6 +46,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keep-going", action="store_true", help="leave out what is wrong or not supported; the exit code says so"
     )
+    parser.add_argument(
+        "--watch", action="store_true", help="render again whenever a file of the project changes, until Ctrl-C"
+    )
 
 
 def run(options: argparse.Namespace) -> int:

@@ -23,6 +23,9 @@ extern const hn_backend hn_backend_osmesa; /* Mesa's software renderer alone: no
 extern const hn_backend hn_backend_egl;    /* a GPU without a display; without one, a software renderer */
 extern const hn_backend hn_backend_glfw;   /* a window of the desktop and its driver */
 
+/* The GLFWwindow that the context of the glfw backend belongs to; NULL while that is not open. */
+void *hn_glfw_window(void);
+
 /* The functions of a shared library: `names` and where each goes, ended by NULL. Sets `*library`, or leaves it NULL and
  * returns -1 with a message that tells to install `package`. */
 typedef struct {

@@ -1,4 +1,4 @@
-/* backend_glfw.c: the context of a hidden window, by GLFW: the desktop's own driver. */
+/* backend_glfw.c: the context of a window, by GLFW: the desktop's own driver. Hidden until window.c shows it. */
 #include "backend.h"
 
 #define GLFW_INCLUDE_NONE
@@ -60,6 +60,10 @@ static void close_glfw(void) {
     if (initialised)
         glfw.terminate();
     initialised = 0;
+}
+
+void *hn_glfw_window(void) {
+    return window;
 }
 
 static int is_current(void) {

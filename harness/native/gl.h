@@ -20,6 +20,7 @@
     X(PFNGLBLENDCOLORPROC, BlendColor)                           \
     X(PFNGLBLENDEQUATIONSEPARATEPROC, BlendEquationSeparate)     \
     X(PFNGLBLENDFUNCSEPARATEPROC, BlendFuncSeparate)             \
+    X(PFNGLBLITFRAMEBUFFERPROC, BlitFramebuffer)                 \
     X(PFNGLBUFFERDATAPROC, BufferData)                           \
     X(PFNGLCHECKFRAMEBUFFERSTATUSPROC, CheckFramebufferStatus)   \
     X(PFNGLCLEARBUFFERFIPROC, ClearBufferfi)                     \

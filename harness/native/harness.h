@@ -290,6 +290,40 @@ typedef struct {
 /* Draws. GL's own refusals (a geometry stage that wants other primitives, say) fail with GL's error. */
 int hn_draw(hn_target *target, const hn_call *call);
 
+/* ---- Window (window.c) --------------------------------------------------------------------------------- */
+
+/* Of the context of the glfw backend alone: with another, or without a context, all of these fail. */
+
+typedef enum {
+    HN_EVENT_KEY, /* `code` is GLFW's key, of the keyboard's US layout; `action` 0 up, 1 down, 2 repeated */
+    HN_EVENT_BUTTON, /* `code` is GLFW's mouse button; `action` 0 up, 1 down; where the pointer is */
+    HN_EVENT_MOVE,   /* the pointer is at x, y: pixels from the window's left and top */
+    HN_EVENT_WHEEL,  /* turned by y notches, positive away from the user */
+    HN_EVENT_SIZE,   /* the window is x by y pixels now */
+    HN_EVENT_CLOSE   /* the user wants it closed */
+} hn_event_kind;
+
+typedef struct {
+    int32_t kind, code, action;
+    double x, y;
+} hn_event;
+
+/* Makes the context's window visible, with that many pixels inside. */
+int hn_window_show(const char *title, int width, int height);
+/* The text of its title bar, UTF-8. */
+int hn_window_title(const char *title);
+/* The events since the last call, in order; waits up to `seconds` for one. Fills `out` with at most `capacity` and
+ * returns how many; what does not fit comes with the next call. -1 on failure. */
+int hn_window_events(hn_event *out, int capacity, double seconds);
+/* Draws the colour of a target over the whole window, clamped to 0...1; seen after hn_window_swap(). */
+int hn_window_present(hn_target *target);
+/* The same of width * height * 4 bytes, bottom row first. */
+int hn_window_present_bytes(int width, int height, const uint8_t *rgba);
+/* Reads what was presented and not yet swapped; the window's size, and unless it is NULL `rgba` with
+ * width * height * 4 bytes, bottom row first. Alpha is 255. `rgba` has room for `capacity` bytes. */
+int hn_window_read(int *width, int *height, uint8_t *rgba, size_t capacity);
+int hn_window_swap(void);
+
 #if defined(__GNUC__)
 #pragma GCC visibility pop
 #endif

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -102,6 +104,41 @@ def test_an_unknown_pass_is_named(clock):
 def test_odd_times_do_not_crash(clock, options):
     done = harness_render(clock, *options)
     assert "Traceback" not in done.stderr
+
+
+def test_watching_renders_again_after_each_change_and_each_error(clock):
+    command = [
+        sys.executable,
+        "-m",
+        "harness.cli",
+        "render",
+        "project.sprj",
+        "-o",
+        "out.png",
+        "--size",
+        "4x2",
+        "--watch",
+    ]
+    shader, picture = clock / "quad.frag", clock / "out.png"
+    good = shader.read_text()
+
+    def wait(reached):
+        end = time.monotonic() + 30
+        while not reached():
+            assert watching.poll() is None and time.monotonic() < end
+            time.sleep(0.02)
+
+    with (clock / "log").open("w") as log:
+        watching = subprocess.Popen(command, cwd=clock, stderr=log)
+        try:
+            wait(picture.exists)
+            shader.write_text(good.replace("time * 10.0", "wrong"))
+            wait(lambda: "wrong" in (clock / "log").read_text())
+            shader.write_text(good.replace("time * 10.0", "42.0"))
+            wait(lambda: first_pixel(picture)[0] == 42)
+        finally:
+            watching.send_signal(signal.SIGINT)
+            assert watching.wait(10) == 130
 
 
 def test_an_endless_loop_ends_at_the_time_limit(tmp_path):

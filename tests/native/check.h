@@ -49,5 +49,6 @@ void test_draw(void);
 void test_target(void);
 void test_buffer(void);
 void test_evaluate(void);
+void test_window(int has_window);
 
 #endif

@@ -202,6 +202,7 @@ int main(int argc, char **argv) {
     test_target();
     test_buffer();
     test_draw();
+    test_window(strcmp(backend, "glfw") == 0);
     hn_context_close();
     printf("%d passed, %d failed\n", n_passed, n_failed);
     return n_failed > 0 ? EXIT_FAILURE : EXIT_SUCCESS;
