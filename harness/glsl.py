@@ -62,6 +62,10 @@ class Source:
         file, number = self.origin(found[0][0])
         return GlslError("\n".join(shown).removeprefix(f"{file}:{number}: "), file, number)
 
+    def errors(self, log: str) -> list[tuple[int, str]]:
+        """Each error of that log by itself: (line of ``text``, what the compiler says), 0 for a linker's of no line."""
+        return list(_messages(log)) or [(0, log.strip())]
+
 
 def _messages(log: str) -> Iterator[tuple[int, str]]:
     """(line of the text, message) of each error in a log of glslang or of a driver, each once."""
@@ -108,9 +112,9 @@ def _paste(
     included = set()
     folders = [*include_dirs, path.parent] if library else include_dirs
     pattern = _LIBRARY_INCLUDE if library else _INCLUDE
-    lines = _read(path)
+    lines, shown = _read(path), shown_path(path)
     for number, text in enumerate(_joined(lines) if library else lines, 1):
-        origin = shown_path(path), number
+        origin = shown, number
         match = pattern.match(text)
         if not match:
             yield text, origin, None

@@ -177,6 +177,8 @@ uint32_t hn_mesh_fields(const hn_mesh *mesh);
 size_t hn_mesh_vertex_count(const hn_mesh *mesh);
 size_t hn_mesh_index_count(const hn_mesh *mesh);
 size_t hn_mesh_stray_faces(const hn_mesh *mesh);
+/* Copies the mesh back: as many vertices and indices as it has; the indices count through all its parts. */
+int hn_mesh_read(const hn_mesh *mesh, hn_vertex *vertices, uint32_t *indices);
 
 /* ---- Buffers (buffer.c) -------------------------------------------------------------------------------- */
 

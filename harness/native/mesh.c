@@ -257,3 +257,21 @@ size_t hn_mesh_index_count(const hn_mesh *mesh) {
 size_t hn_mesh_stray_faces(const hn_mesh *mesh) {
     return mesh ? mesh->n_stray_faces : 0;
 }
+
+int hn_mesh_read(const hn_mesh *mesh, hn_vertex *vertices, uint32_t *indices) {
+    const char *operation = "hn_mesh_read";
+    if (hn_context_check(operation))
+        return -1;
+    if (!mesh || !vertices || !indices || mesh->context_id != hn_context_id())
+        return hn_fail("%s: no mesh of this context, or nowhere to copy it to", operation);
+    gl.BindBuffer(GL_ARRAY_BUFFER, mesh->vertex_buffer);
+    gl.GetBufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(mesh->n_vertices * sizeof *vertices), vertices);
+    gl.BindBuffer(GL_ARRAY_BUFFER, mesh->index_buffer);
+    gl.GetBufferSubData(GL_ARRAY_BUFFER, 0, (GLsizeiptr)(mesh->n_indices * sizeof *indices), indices);
+    if (hn_check_gl("%s", operation))
+        return -1;
+    for (size_t p = 0; p < mesh->n_parts; ++p)
+        for (size_t i = 0; i < mesh->parts[p].n_indices; ++i)
+            indices[mesh->parts[p].first_index + i] += (uint32_t)mesh->parts[p].first_vertex;
+    return 0;
+}

@@ -91,6 +91,15 @@ static void test_node_order(void) {
     /* At equal depth the first that is drawn stays. */
     float rgba[4] = {0};
     CHECK(draw_field(mesh, HN_NORMAL, rgba) == 0 && is(rgba, 0, 1, 0, 1));
+    /* Copied back: the parts follow one another, and the indices of each go on where the part before ended. */
+    hn_vertex vertices[9] = {0};
+    uint32_t indices[9] = {0};
+    CHECK(hn_mesh_read(mesh, vertices, indices) == 0);
+    for (uint32_t i = 0; i < 9; ++i)
+        CHECK(indices[i] == i && vertices[i].position[0] == (i % 3 == 1 ? 3 : -1) &&
+              vertices[i].normal[0] == (i / 3 == 1) && vertices[i].normal[1] == (i / 3 != 1));
+    CHECK_FAILS(hn_mesh_read(mesh, vertices, NULL) != 0, "hn_mesh_read: no mesh");
+    CHECK_FAILS(hn_mesh_read(NULL, vertices, indices) != 0, "hn_mesh_read: no mesh");
     hn_mesh_delete(mesh);
 }
 

@@ -1,0 +1,47 @@
+"""What can be known of a SHADERed project without looking at its picture: ``check(path)`` lists it."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from .. import glsl
+from ..errors import ProjectError
+from ..xml_lines import parse
+from . import features, models, samplers, shaders, structure, textures, uniforms
+from .findings import RULES, SEVERITIES, Finding, Rule
+from .state import State
+
+__all__ = ["RULES", "SEVERITIES", "Finding", "Rule", "check"]
+
+
+# Shapes and models of absurd numbers overflow silently, as in SHADERed.
+@np.errstate(divide="ignore", invalid="ignore", over="ignore")
+def check(project_path: str | os.PathLike) -> list[Finding]:
+    """All findings about a project, by file and line. What keeps a part from being looked at is itself a finding."""
+    path = Path(project_path)
+    try:
+        root = parse(path)
+        unreadable = structure.check_root(root)
+    except ProjectError as error:
+        unreadable = error
+    if unreadable is not None:
+        fix = "correct the file, or save it again from SHADERed 1.5.6"
+        return [Finding("HS001", unreadable.message, fix, glsl.shown_path(path), unreadable.line)]
+    state = State(path, root)
+    structure.check(state)
+    shaders.check(state)
+    uniforms.check(state)
+    samplers.check(state)
+    textures.check(state)
+    models.check(state)
+    features.check(state)
+    structure.check_reader(state)
+    return sorted(state.findings, key=lambda f: (_rank(f, state), f.file, f.line or 0, f.code))
+
+
+def _rank(finding: Finding, state: State) -> int:
+    """The .sprj first."""
+    return int(finding.file != glsl.shown_path(state.path))
