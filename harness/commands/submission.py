@@ -9,10 +9,11 @@ from . import render
 
 SHORT = "check, test and pack a .sprj with a report, to hand in"
 DESCRIPTION = """\
-Packs a SHADERed project to hand it in: the .sprj, the shaders, textures and models that it uses, and report.html, a page
-with the picture, the parts of the exercise and the evidence for each. What the parts are, docs/exercise.toml beside the
-project says. Nothing is packed when `harness check` finds errors or a test fails, or when the archive, unpacked into an
-empty folder, is not checked and rendered there as here. The same project gives the same bytes.
+Packs a SHADERed project to hand it in: the .sprj, the shaders, textures and models that it uses, and report.html, a
+page with the picture, the parts of the exercise and the evidence for each. What the parts are is said by
+docs/exercise.toml beside the project. Nothing is packed when `harness check` finds errors or a test fails, or when the
+archive, unpacked into an empty folder, is not checked and rendered there as here. One project always gives one archive,
+byte for byte.
 
   harness submission
   harness submission project.sprj -o build/submission.zip --no-tests

@@ -71,9 +71,7 @@ def make(
     return Submission(output, tuple(sorted(files)), len(packed))
 
 
-def _evidence(
-    path: Path, parts: exercise.Exercise, tests: bool, progress: Callable[[str], None]
-) -> report.Evidence:
+def _evidence(path: Path, parts: exercise.Exercise, tests: bool, progress: Callable[[str], None]) -> report.Evidence:
     from . import evidence
 
     read = sprj.read(path)

@@ -62,7 +62,9 @@ class _Collection:
 
     def _relative(self, at: Element, text: str) -> str:
         if _ABSOLUTE.match(text):
-            raise at.error(f'"{text}" is an absolute path, which no other machine has: write it from the .sprj\'s folder')
+            raise at.error(
+                f'"{text}" is an absolute path, which no other machine has: write it from the .sprj\'s folder'
+            )
         return text.replace("\\", "/")
 
     def _add(self, path: Path, at: Element | None = None) -> bool:

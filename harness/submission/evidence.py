@@ -95,7 +95,8 @@ class Regions:
 
     def __init__(self, exercise: Exercise, project: Project):
         self._exercise, self._project = exercise, project
-        self._until: dict[str | None, np.ndarray] = {None: np.zeros((*_LOOK[::-1], 4), np.uint8)}
+        clear = np.round(np.clip(project.settings.clear_color[:3], 0, 1) * np.float64(255)).astype(np.uint8)
+        self._until: dict[str | None, np.ndarray] = {None: np.broadcast_to(clear, (*_LOOK[::-1], 3))}
 
     def crop(self, picture: np.ndarray, region: Region) -> np.ndarray:
         """The part of the picture, (h, w, 4) uint8. ExerciseError when the pass changes nothing."""
@@ -131,7 +132,7 @@ class Regions:
         if until not in self._until:
             renderer = Renderer(self._project.file, _LOOK, until_pass=until)
             renderer.draw()
-            self._until[until] = renderer.picture()
+            self._until[until] = renderer.picture()[..., :3]
         return self._until[until]
 
 
@@ -173,7 +174,16 @@ def run_tests(exercise: Exercise, folder: Path) -> TestResults:
         raise exercise.error("it names no tests to run; --no-tests packs without")
     with tempfile.TemporaryDirectory() as temporary:
         report = Path(temporary) / "junit.xml"
-        options = ["-q", "-p", "no:cacheprovider", "--rootdir", ".", "-o", "junit_family=xunit1", f"--junitxml={report}"]
+        options = [
+            "-q",
+            "-p",
+            "no:cacheprovider",
+            "--rootdir",
+            ".",
+            "-o",
+            "junit_family=xunit1",
+            f"--junitxml={report}",
+        ]
         command = [sys.executable, "-m", "pytest", *exercise.tests, *options]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         if done.returncode:
@@ -212,7 +222,11 @@ def costs(exercise: Exercise, folder: Path) -> Costs | None:
     if not exercise.costs:
         return None
     functions = [shader(folder / row.file, row.defines)[row.function] for row in exercise.costs]
-    columns, numbers, driver = ["SPIR-V operations, weighted"], [[f"{spirv_cost.weighted_count(f):g}"] for f in functions], None
+    columns, numbers, driver = (
+        ["SPIR-V operations, weighted"],
+        [[f"{spirv_cost.weighted_count(f):g}"] for f in functions],
+        None,
+    )
     if isa.unavailable() is None:
         for target in TARGETS:
             columns.append(f"{target}, cycles")

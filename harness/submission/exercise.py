@@ -119,7 +119,8 @@ def _part(table: _Table) -> Part:
             for t in table.tables("region")
         ),
         tuple(
-            Quotation(t.get("file", str), t.get("function", str), t.get("pass", str, "")) for t in table.tables("shader")
+            Quotation(t.get("file", str), t.get("function", str), t.get("pass", str, ""))
+            for t in table.tables("shader")
         ),
         tuple(table.get("tests", list, [])),
     )
