@@ -19,7 +19,8 @@ from .. import sprj
 from ..errors import HarnessError
 from ..glsl import shown_path
 from ..picture import write
-from . import archive, contents, exercise, report
+from ..project import Project
+from . import archive, contents, evidence, exercise, report
 
 REPORT = "report.html"
 SIZE, SUPERSAMPLE = (1920, 1080), 2
@@ -55,11 +56,13 @@ def make(
     files = contents.files(path)
     if REPORT in files:
         raise HarnessError(f"the project has a file {REPORT} of its own, where the report goes", path)
-    evidence = _evidence(path, parts, tests, progress)
+    read = sprj.read(path)
+    quoted = _quoted(path, read, parts)
     progress(f"rendering {size[0]} x {size[1]}")
     picture = _render(path.parent, path.name, size, supersample)
+    found = _evidence(path, read, parts, quoted, tests, progress)
     progress("writing the report")
-    files[REPORT] = report.write(path, parts, evidence, picture, findings, sorted(files)).encode()
+    files[REPORT] = report.write(path, parts, found, picture, findings, sorted(files)).encode()
     packed = archive.pack(files)
     progress("unpacking it elsewhere, checking and rendering it again")
     _verify(packed, path.name, files, findings, picture, size, supersample)
@@ -71,17 +74,26 @@ def make(
     return Submission(output, tuple(sorted(files)), len(packed))
 
 
-def _evidence(path: Path, parts: exercise.Exercise, tests: bool, progress: Callable[[str], None]) -> report.Evidence:
-    from . import evidence
-
-    read = sprj.read(path)
-    quoted = [[evidence.quote(parts, read, q) for q in part.quotations] for part in parts.parts]
+def _quoted(path: Path, read: Project, parts: exercise.Exercise) -> list[list[evidence.Quoted]]:
+    """The lines of shaders for each part. Cheap, so it comes first; so are tests that are not there."""
     evidence.check_tests_exist(parts, path.parent)
-    costs = evidence.costs(parts, path.parent)
+    return [[evidence.quote(parts, read, q) for q in part.quotations] for part in parts.parts]
+
+
+def _evidence(
+    path: Path,
+    read: Project,
+    parts: exercise.Exercise,
+    quoted: list[list[evidence.Quoted]],
+    tests: bool,
+    progress: Callable[[str], None],
+) -> report.Evidence:
+    """All evidence. The project has been drawn by a process with limits before, so it is drawn in this one."""
     regions = evidence.Regions(parts, read)
     for part in parts.parts:
         for region in part.regions:
             regions.box(region.pass_name)  # before the tests, which take longer
+    costs = evidence.costs(parts, path.parent)
     results = None
     if tests:
         progress(f"running the tests in {', '.join(parts.tests)}")

@@ -427,7 +427,7 @@ def test_a_refusal_is_one_message_and_exit_code_1(tmp_path):
 
 
 def test_progress_is_told(made, told):
-    assert [said.split()[0] for said in told] == ["checking", "running", "rendering", "writing", "unpacking"]
+    assert [said.split()[0] for said in told] == ["checking", "rendering", "running", "writing", "unpacking"]
 
 
 @pytest.fixture(scope="module")
