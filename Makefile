@@ -19,7 +19,7 @@ define install_extra
 endef
 
 .PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation bench cost lint format \
-        build models textures clean
+        build submission models textures clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -51,6 +51,9 @@ test-sanitize: $(VENV)/bin/python ## the C library under AddressSanitizer and UB
 
 test-exhaustive: $(VENV)/.harness $(VENV)/.test ## functions of one float at every float of their domain (minutes)
 	$(BIN)/python -m pytest -rA --durations=0 tests/exhaustive/every_float.py
+
+submission: $(VENV)/.harness $(VENV)/.test ## all there is to hand in, to build/submission.zip
+	$(BIN)/harness submission project.sprj -o build/submission.zip
 
 bench: $(VENV)/.harness $(VENV)/.bench ## speed and memory, beside numpy, numba and moderngl
 	$(BIN)/python -m bench

@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The project, the picture, its size and quality, when it is, and how much of it."""
     parser.add_argument("project", metavar="PROJECT.sprj")
     parser.add_argument("-o", "--output", required=True, metavar="OUT.png", help="the picture to write")
-    parser.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help="pixels (1280x720)")
+    parser.add_argument("--size", type=size, default=(1280, 720), metavar="WxH", help="pixels (1280x720)")
     parser.add_argument(
         "--supersample",
         type=int,
@@ -80,7 +80,8 @@ def run(options: argparse.Namespace) -> int:
     return 1 if renderer.errors else 0
 
 
-def _size(text: str) -> tuple[int, int]:
+def size(text: str) -> tuple[int, int]:
+    """A width and a height such as 1280x720."""
     match = re.fullmatch(r"([1-9]\d{0,4})x([1-9]\d{0,4})", text)
     if not match:
         raise argparse.ArgumentTypeError(f"{text!r} is no size such as 1280x720")
