@@ -113,8 +113,8 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 
 // Radiance reflected toward v per unit of irradiance perpendicular to l: (diffuse + specular) (n.l)+.
 // Defined, finite and >= 0 for every unit l, v, n and every material in 0...1; 0 on the back side, at both horizons and
-// where l = -v. Roughness below 3e-7, where the model would leave float's range, shows less and less of a highlight, and
-// 0, a mirror, none: a light without extent is not seen in it.
+// where l = -v. Below roughness 1e-6 the highlight falls behind the model's, which leaves float's range at 2.5e-7; at 0, a
+// mirror, there is none: a light without extent is not seen in it.
 //
 // It equals shade_exercise() in exact arithmetic, step by step, a for the albedo and m for the metalness:
 //   1. With H = l + v not normalised, n.H = n.l + n.v, and l.h = |H|/2 = c, because l and v are unit. No division by |H|.
@@ -131,15 +131,15 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 {
     float alpha = m.roughness * m.roughness;
-    float alpha2 = alpha * alpha + 1e-26; // k <= 5e12 and V n.l <= 5e12: neither they nor k^2 V n.l leave float's range
+    float alpha2 = alpha * alpha + 1e-26; // so that k <= 5e12 and S < 1e38: nothing here leaves float's range
     float NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, v), 0.0, 1.0);
-    float lit = (NoV > 0.0 ? NoL : 0.0) / PI; // 0 also where the surface is not seen
+    float lit = (NoV > 0.0 ? NoL : 0.0) / PI; // n.l/pi, or 0 where the viewer is behind the surface
 
     vec3 H = l + v;
     float NoHH = NoL + NoV; // n.H where it matters: with both cosines positive
     vec3 nxH = cross(n, H);
-    // |H|^2 times the squared sine and cosine of the angle between n and h. 1e-37 takes part only where H is 0.
+    // |H|^2 times the squared sine and cosine of the angle between n and h. Where H is 0, 1e-37 makes 0/0 a number.
     float sin2 = nxH.x * nxH.x + (nxH.y * nxH.y + (nxH.z * nxH.z + 1e-37));
     float cos2 = NoHH * NoHH;
     float HH = sin2 + cos2;
@@ -155,7 +155,7 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 #else
     float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
     float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
-    float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37)); // 1e-37 only against 0/0
+    float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
 #endif
     float S = k * k * (V * lit);
 

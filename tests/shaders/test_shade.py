@@ -151,7 +151,7 @@ def test_a_highlight_grows_as_the_model_says_until_float_ends(library, mode):
 
 @pytest.mark.parametrize("rung", RUNGS, ids=lambda r: "-".join(r.values()) or "default")
 def test_where_the_model_is_beyond_all_floats_shade_is_a_number(library, mode, rung):
-    """A white metal, h = n almost, at both horizons with unequal cosines: F is 1, V and D without limit as alpha is 0."""
+    """A white metal, h = n, at both horizons with unequal cosines: F is 1, and D V has no limit as alpha goes to 0."""
     cosines = [10.0**-k for k in (4, 5, 6, 7, 8, 10, 13, 20, 37)]
     cos_l, cos_v, roughness = np.meshgrid(cosines, cosines, 10 ** np.linspace(-12, -2, 81), indexing="ij")
     l, v = (np.stack(np.broadcast_arrays(x, y, c), -1) for x, y, c in ((0.6, 0.8, cos_l), (-0.6, -0.8, cos_v)))  # noqa: E741
