@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-#: largest relative difference of one value. The worst found among 4 million was 1.7e-6, 14 units in the last place.
+#: largest relative difference of one value. The worst found among 4 million was 2.4e-6, 20 units in the last place.
 TOLERANCE = 1e-5
 
 

@@ -10,9 +10,10 @@ import numpy as np
 from .inputs import Inputs
 
 # A Python number would make the arithmetic double.
-PI, DIELECTRIC_F0, TINY = np.float32(np.pi), np.float32(0.04), np.float32(1.2e-38)
+PI, DIELECTRIC_F0 = np.float32(np.pi), np.float32(0.04)
 ZERO, HALF, ONE = np.float32(0), np.float32(0.5), np.float32(1)
-LEAST_DIVISOR, MOST = np.float32(1e-37), np.float32(1e37)
+#: the least alpha^2, and the least divisor
+LEAST_ALPHA2, LEAST = np.float32(1e-26), np.float32(1e-37)
 
 
 @numba.njit(inline="always")
@@ -27,34 +28,37 @@ def _shade(l, v, n, albedo, metalness, roughness, radiance):  # noqa: E741
         lx, ly, lz = l[i, 0], l[i, 1], l[i, 2]
         vx, vy, vz = v[i, 0], v[i, 1], v[i, 2]
         alpha = roughness[i] * roughness[i]
-        alpha2 = alpha * alpha
+        alpha2 = alpha * alpha + LEAST_ALPHA2
         NoL = _clamp(nx * lx + ny * ly + nz * lz)
         NoV = _clamp(nx * vx + ny * vy + nz * vz)
+        lit = NoL / PI if NoV > ZERO else ZERO
         hx, hy, hz = lx + vx, ly + vy, lz + vz
         NoHH = NoL + NoV
         x, y, z = ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx
-        sin2, cos2 = x * x + y * y + z * z, NoHH * NoHH
+        sin2, cos2 = x * x + (y * y + (z * z + LEAST)), NoHH * NoHH
         HH = sin2 + cos2
 
-        k = alpha * HH / (sin2 + (alpha2 * cos2 + LEAST_DIVISOR))
-        D = k * k / PI
-        masking = NoL * np.sqrt(alpha2 + NoV * (NoV - alpha2 * NoV))
-        shadowing = NoV * np.sqrt(alpha2 + NoL * (NoL - alpha2 * NoL))
-        V = HALF / max(masking + shadowing, TINY)
-        highlight = min(D * (V * NoL), MOST)
+        k = alpha * HH / (sin2 + alpha2 * cos2)
+        masking = np.sqrt((NoV - alpha2 * NoV) * NoV + alpha2)
+        shadowing = np.sqrt((NoL - alpha2 * NoL) * NoL + alpha2)
+        V = HALF / (NoL * masking + (NoV * shadowing + LEAST))
+        S = k * k * (V * lit)
 
-        LoH = min(HALF * np.sqrt(HH), ONE)
-        x = ONE - LoH
+        c = HALF * np.sqrt(HH)
+        x = max(ONE - c, ZERO)
         x2 = x * x
-        w = x2 * x2 * x
-        left = LoH * ((ONE + x) * (ONE + x2) + x2 * x2)
-        diffuse = (ONE - metalness[i]) * (NoL / PI)
-        lit = NoL > ZERO and NoV > ZERO
-        for c in range(3):
-            F0 = DIELECTRIC_F0 * (ONE - metalness[i]) + albedo[i, c] * metalness[i]
-            F = F0 + (ONE - F0) * w
-            value = F * highlight + (ONE - F0) * left * albedo[i, c] * diffuse
-            radiance[i, c] = value if lit else ZERO
+        x4 = x2 * x2
+        left2 = c * x + c
+        left4 = left2 * x2 + left2
+        W = x4 * c + left4
+        dielectric = ONE - metalness[i]
+        f = DIELECTRIC_F0 * (dielectric * W)
+        A, B = metalness[i] * W, x4 * x + f
+        E = dielectric * lit
+        linear, square, constant = S * A + E * (W - f), E * A, S * B
+        for j in range(3):
+            a = albedo[i, j]
+            radiance[i, j] = a * (linear - square * a) + constant
 
 
 def contender() -> Callable[[Inputs], np.ndarray]:

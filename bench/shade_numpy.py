@@ -11,7 +11,9 @@ from .inputs import Inputs
 #: rows at a time: the temporaries of a block stay in the cache, which is 1.5 times as fast at 4 million
 BLOCK = 16384
 
-PI, DIELECTRIC_F0, TINY = np.float32(np.pi), np.float32(0.04), np.float32(1.2e-38)
+PI, DIELECTRIC_F0 = np.float32(np.pi), np.float32(0.04)
+#: the least alpha^2, and the least divisor
+LEAST_ALPHA2, LEAST = np.float32(1e-26), np.float32(1e-37)
 
 
 def _dot(a, b):
@@ -20,32 +22,35 @@ def _dot(a, b):
 
 def _shade(l, v, n, albedo, metalness, roughness):  # noqa: E741
     alpha = roughness * roughness
-    alpha2 = alpha * alpha
+    alpha2 = alpha * alpha + LEAST_ALPHA2
     NoL, NoV = np.clip(_dot(n, l), 0, 1), np.clip(_dot(n, v), 0, 1)
+    lit = np.where(NoV > 0, NoL, np.float32(0)) / PI
     H = l + v
     NoHH = NoL + NoV
     (nx, ny, nz), (hx, hy, hz) = n.T, H.T
     x, y, z = ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx
-    sin2, cos2 = x * x + y * y + z * z, NoHH * NoHH
+    sin2, cos2 = x * x + (y * y + (z * z + LEAST)), NoHH * NoHH
     HH = sin2 + cos2
 
-    k = alpha * HH / (sin2 + (alpha2 * cos2 + np.float32(1e-37)))
-    D = k * k / PI
-    masking = NoL * np.sqrt(alpha2 + NoV * (NoV - alpha2 * NoV))
-    shadowing = NoV * np.sqrt(alpha2 + NoL * (NoL - alpha2 * NoL))
-    V = np.float32(0.5) / np.maximum(masking + shadowing, TINY)
-    highlight = np.minimum(D * (V * NoL), np.float32(1e37))
+    k = alpha * HH / (sin2 + alpha2 * cos2)
+    masking = np.sqrt((NoV - alpha2 * NoV) * NoV + alpha2)
+    shadowing = np.sqrt((NoL - alpha2 * NoL) * NoL + alpha2)
+    V = np.float32(0.5) / (NoL * masking + (NoV * shadowing + LEAST))
+    S = k * k * (V * lit)
 
-    LoH = np.minimum(np.float32(0.5) * np.sqrt(HH), 1)
-    x = 1 - LoH
+    c = np.float32(0.5) * np.sqrt(HH)
+    x = np.maximum(1 - c, 0)
     x2 = x * x
-    w = x2 * x2 * x
-    left = LoH * ((1 + x) * (1 + x2) + x2 * x2)
-    diffuse = (1 - metalness) * (NoL / PI)
-    F0 = (DIELECTRIC_F0 * (1 - metalness))[:, None] + albedo * metalness[:, None]
-    F = F0 + (1 - F0) * w[:, None]
-    radiance = F * highlight[:, None] + (1 - F0) * left[:, None] * albedo * diffuse[:, None]
-    return np.where(((NoL > 0) & (NoV > 0))[:, None], radiance, np.float32(0))
+    x4 = x2 * x2
+    left2 = c * x + c
+    left4 = left2 * x2 + left2
+    W = x4 * c + left4
+    dielectric = 1 - metalness
+    f = DIELECTRIC_F0 * (dielectric * W)
+    A, B = metalness * W, x4 * x + f
+    E = dielectric * lit
+    linear, square, constant = S * A + E * (W - f), E * A, S * B
+    return albedo * (linear[:, None] - square[:, None] * albedo) + constant[:, None]
 
 
 def contender() -> Callable[[Inputs], np.ndarray]:

@@ -113,56 +113,71 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 
 // Radiance reflected toward v per unit of irradiance perpendicular to l: (diffuse + specular) (n.l)+.
 // Defined, finite and >= 0 for every unit l, v, n and every material in 0...1; 0 on the back side, at both horizons and
-// where l = -v. A value beyond 1e37, which the model reaches as roughness goes to 0, is 1e37.
+// where l = -v. Below roughness 1e-6 the highlight falls behind the model's, which leaves float's range at 2.5e-7; at 0, a
+// mirror, there is none: a light without extent is not seen in it.
 //
-// It equals shade_exercise() in exact arithmetic. Term by term, with H = l + v not normalised:
-//   cosines  n.H = n.l + n.v, and l.h = |H|/2, because l and v are unit. No division by |H|.
-//   sine     |n x H|^2 + (n.H)^2 = |H|^2, because n is unit. For a small angle between n and h the cross product keeps the
-//            digits that 1 - (n.h)^2 has lost: the cosine of a small angle is all ones.
-//   D        1 + (n.h)^2 (alpha^2 - 1) = |n x h|^2 + alpha^2 (n.h)^2 = (|n x H|^2 + alpha^2 (n.H)^2) / |H|^2, so that
-//            D = k^2/pi with k = alpha |H|^2 / (|n x H|^2 + alpha^2 (n.H)^2).
-//   1 - F    F = F0 + (1 - F0) w with w = x^5, x = 1 - l.h, so 1 - F = (1 - F0) (1 - x^5), and
-//            1 - x^5 = (1 - x) (1 + x + x^2 + x^3 + x^4) = l.h ((1 + x) (1 + x^2) + x^4): nothing cancels as l.h goes to 0.
+// It equals shade_exercise() in exact arithmetic, step by step, a for the albedo and m for the metalness:
+//   1. With H = l + v not normalised, n.H = n.l + n.v, and l.h = |H|/2 = c, because l and v are unit. No division by |H|.
+//   2. |n x H|^2 + (n.H)^2 = |H|^2, because n is unit. For a small angle between n and h the cross product keeps the digits
+//      that 1 - (n.h)^2 has lost: the cosine of a small angle is all ones.
+//   3. So 1 + (n.h)^2 (alpha^2 - 1) = (|n x H|^2 + alpha^2 (n.H)^2) / |H|^2, and D = k^2/pi with
+//      k = alpha |H|^2 / (|n x H|^2 + alpha^2 (n.H)^2).
+//   4. With x = 1 - c and w = x^5, W = 1 - w is c + x (c + x (c + x (c + x c))), a sum of positive terms: nothing cancels as
+//      c goes to 0. In three steps: 1 - x^2 = c + c x, 1 - x^4 = (1 - x^2) + (1 - x^2) x^2, W = (1 - x^4) + x^4 c.
+//   5. F0 = 0.04 (1 - m) + m a, so F = F0 + (1 - F0) w = F0 W + w = A a + B with A = m W, B = f + w, f = 0.04 (1 - m) W.
+//   6. 1 - F = (1 - B) - A a, and 1 - B = W - f = Z.
+//   7. With S = D V n.l and E = (1 - m) n.l/pi the sum S F + E (1 - F) a is (S A + E Z - E A a) a + S B. Z >= A, since
+//      Z - A = 0.96 (1 - m) W: it is not negative. All but a is the same for the three colours.
 vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 {
     float alpha = m.roughness * m.roughness;
+    float alpha2 = alpha * alpha + 1e-26; // so that k <= 5e12 and S < 1e38: nothing here leaves float's range
     float NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, v), 0.0, 1.0);
+    float lit = (NoV > 0.0 ? NoL : 0.0) / PI; // n.l/pi, or 0 where the viewer is behind the surface
+
     vec3 H = l + v;
     float NoHH = NoL + NoV; // n.H where it matters: with both cosines positive
     vec3 nxH = cross(n, H);
-    float sin2 = dot(nxH, nxH); // |H|^2 times the squared sine and cosine of the angle between n and h
+    // |H|^2 times the squared sine and cosine of the angle between n and h. Where H is 0, 1e-37 makes 0/0 a number.
+    float sin2 = nxH.x * nxH.x + (nxH.y * nxH.y + (nxH.z * nxH.z + 1e-37));
     float cos2 = NoHH * NoHH;
     float HH = sin2 + cos2;
 
 #if BRDF_D == D_EXERCISE
-    float D = D_GGX(NoHH * inversesqrt(max(HH, TINY)), alpha);
+    float NoH = NoHH * inversesqrt(HH);
+    float k = alpha / max(1.0 + NoH * NoH * (alpha2 - 1.0), alpha2);
 #else
-    // 1e-37 takes part only where n = h and alpha is 0 (or n.H is): k^2 stays below 1e37, and 0/0 becomes 0, since a mirror
-    // does not show a light without extent.
-    float k = alpha * HH / (sin2 + (alpha * alpha * cos2 + 1e-37));
-    float D = k * k / PI;
+    float k = alpha * HH / (sin2 + alpha2 * cos2);
 #endif
 #if BRDF_V == V_HAMMON
-    float V = V_Hammon(NoL, NoV, alpha);
+    float V = 0.5 / (mix(2.0 * NoL * NoV, NoL + NoV, alpha) + 1e-37);
 #else
-    float V = V_SmithGGXCorrelated(NoL, NoV, alpha);
+    float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
+    float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
+    float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
 #endif
-    float highlight = min(D * (V * NoL), 1e37);
+    float S = k * k * (V * lit);
 
-    float LoH = 0.5 * sqrt(HH);
-    float w = schlick_weight(LoH);
-    vec3 F0 = DIELECTRIC_F0 * (1.0 - m.metalness) + m.albedo * m.metalness;
-    vec3 F = F0 + (1.0 - F0) * w;
-#if BRDF_DIFFUSE == DIFFUSE_LAMBERT
-    vec3 scattered = vec3(1.0);
-#else
-    float x = 1.0 - LoH;
+    float c = 0.5 * sqrt(HH);
+    float x = clamp(1.0 - c, 0.0, 1.0);
     float x2 = x * x;
-    vec3 scattered = (1.0 - F0) * (LoH * ((1.0 + x) * (1.0 + x2) + x2 * x2)); // 1 - F
+    float x4 = x2 * x2;
+    float left2 = c * x + c;          // 1 - x^2
+    float left4 = left2 * x2 + left2; // 1 - x^4
+    float W = x4 * c + left4;         // 1 - x^5
+
+    float dielectric = 1.0 - m.metalness;
+    float f = DIELECTRIC_F0 * (dielectric * W);
+    float A = m.metalness * W;
+    float B = schlick_weight(c) + f;
+    float E = dielectric * lit;
+#if BRDF_DIFFUSE == DIFFUSE_LAMBERT
+    return m.albedo * (S * A + E) + S * B;
+#else
+    float Z = W - f;
+    return m.albedo * (S * A + E * Z - E * A * m.albedo) + S * B;
 #endif
-    vec3 radiance = F * highlight + scattered * m.albedo * ((1.0 - m.metalness) * (NoL / PI));
-    return NoL > 0.0 && NoV > 0.0 ? radiance : vec3(0.0);
 }
 
 #endif

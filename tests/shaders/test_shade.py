@@ -97,28 +97,6 @@ def test_both_arrangements_agree_where_both_have_digits(library, mode, function)
             assert abs(mp.mpf(float(g)) - w) <= (ARITHMETIC + FLOORS * e.floor + spread) * w
 
 
-def test_each_step_of_the_rearrangement_is_an_identity():
-    """The steps in the comment of shade(), at 50 digits: what it computes is what the exercise writes."""
-    close = mp.mpf(10) ** -42
-    for s in reference.random_scenes(50, seed=3):
-        n, l, v = s.n, s.l, s.v  # noqa: E741
-        H = tuple(a + b for a, b in zip(l, v, strict=True))
-        HH = reference.dot(H, H)
-        h = reference.unit(H)
-        nH = reference.dot(n, l) + reference.dot(n, v)
-        nxH = reference.cross(n, H)
-        pp = reference.dot(nxH, nxH)
-        alpha = mp.mpf(s.material.roughness) ** 2
-        k = alpha * HH / (pp + alpha**2 * nH**2)
-        c = mp.sqrt(HH) / 2
-        x = 1 - c
-        assert abs(nH - reference.dot(n, H)) < close
-        assert abs(c - reference.dot(l, h)) < close
-        assert abs(pp + nH**2 - HH) < close
-        assert abs(k**2 / mp.pi / reference.D_GGX(reference.dot(n, h), alpha) - 1) < close / alpha**2
-        assert abs(c * ((1 + x) * (1 + x**2) + x**4) - (1 - x**5)) < close
-
-
 # ---- Every input -----------------------------------------------------------------------------------------------------
 
 RUNGS = [
@@ -127,6 +105,7 @@ RUNGS = [
     {"BRDF_F": "F_POW"},
     {"BRDF_DIFFUSE": "DIFFUSE_LAMBERT"},
     {"BRDF_D": "D_EXERCISE"},
+    {"BRDF_D": "D_EXERCISE", "BRDF_V": "V_HAMMON"},
 ]
 
 
@@ -157,29 +136,44 @@ def test_a_mirror_shows_its_diffuse_part_alone(library, mode):
     assert_ulp(got, (1 - 0.04) * albedo.astype(float) / np.pi, max_ulp=6)
 
 
-def test_a_mirrors_highlight_grows_as_the_model_says_until_it_is_cut_off(library, mode):
-    """With h = n and l = v = n it is D/4 = 1/(4 pi alpha^2): never more, and within a fifth up to D = 1.2e36."""
-    roughness = np.float32([7.1e-10, 1e-9, 1e-8, 1e-6, 1e-4, 1e-2])
-    alpha = roughness.astype(float) ** 2
+def test_a_highlight_grows_as_the_model_says_until_float_ends(library, mode):
+    """With l = v = n it is D/4 = 1/(4 pi alpha^2), where alpha^2 in the divisor of k is never below 1e-26."""
+    roughness = np.float32([1e-18, 1e-9, 1e-8, 1e-7, 3e-7, 1e-6, 1e-5, 1e-4, 1e-2])
+    alpha2 = roughness.astype(float) ** 4
     got = library("brdf.glsl", mode).shade(
         [0, 0, 1], [0, 0, 1], [0, 0, 1], {"albedo": [1, 1, 1], "metalness": 1, "roughness": roughness}
     )[:, 0]
-    share = got * (4 * np.pi * alpha**2)
-    assert (share <= 1 + 12 * U).all()
-    assert (share >= 0.8).all()
-    assert (share[3:] >= 1 - 12 * U).all()
+    share = (1 + 1e-26 / alpha2) ** -2
+    assert share[roughness >= 1e-6].min() > 0.98
+    assert share[roughness >= 1e-4].min() > 1 - U
+    np.testing.assert_allclose(got, share / (4 * np.pi * alpha2), rtol=12 * U, atol=0)
 
 
-def test_what_is_beyond_1e37_is_1e37(library, mode):
-    """A white metal, h = n almost, at both horizons: F is 1, the model beyond all floats."""
-    l, v, n = np.float32([[0.6, 0.8, 5.4e-6], [-0.6, -0.8, 1e-37], [0, 0, 1]])  # noqa: E741
-    white = reference.Material((1.0, 1.0, 1.0), 1.0, float(np.float32(3e-8)))
-    want = reference.shade(*(reference.vector(*map(float, a)) for a in (l, v, n)), white)
-    assert min(want) > mp.mpf("1e38")
+@pytest.mark.parametrize("rung", RUNGS, ids=lambda r: "-".join(r.values()) or "default")
+def test_where_the_model_is_beyond_all_floats_shade_is_a_number(library, mode, rung):
+    """A white metal, h = n, at both horizons with unequal cosines: F is 1, and D V has no limit as alpha goes to 0."""
+    cosines = [10.0**-k for k in (4, 5, 6, 7, 8, 10, 13, 20, 37)]
+    cos_l, cos_v, roughness = np.meshgrid(cosines, cosines, 10 ** np.linspace(-12, -2, 81), indexing="ij")
+    l, v = (np.stack(np.broadcast_arrays(x, y, c), -1) for x, y, c in ((0.6, 0.8, cos_l), (-0.6, -0.8, cos_v)))  # noqa: E741
+    metal = {"albedo": [1, 1, 1], "metalness": 1, "roughness": roughness}
+    got = library("brdf.glsl", mode, **rung).shade(l, v, [0, 0, 1], metal)
+    assert np.isfinite(got).all()
+    assert got.min() >= 0
+    white = reference.Material((1.0, 1.0, 1.0), 1.0, 1e-8)
+    vectors = (reference.vector(*map(float, np.float32(a))) for a in (l[7, 7, 0], v[7, 7, 0], (0, 0, 1)))
+    assert min(reference.shade(*vectors, white)) > mp.mpf("3.4e38")
+    assert got.max() > 1e36
+
+
+def test_the_last_trace_of_a_dielectric_in_a_metal_scatters_as_the_model_says(library, mode):
+    """1 - metalness is exact however near to 1 metalness is. At roughness 0 the diffuse part is all there is."""
+    metalness = np.float32(1) - np.float32(2) ** -np.arange(1, 25)
     got = library("brdf.glsl", mode).shade(
-        l, v, n, {"albedo": [1, 1, 1], "metalness": 1, "roughness": np.float32(3e-8)}
-    )
-    np.testing.assert_array_equal(got, np.full(3, 1e37, np.float32))
+        [0, 0, 1], [0, 0, 1], [0, 0, 1], {"albedo": [0.5] * 3, "metalness": metalness, "roughness": 0}
+    )[:, 0]
+    m = metalness.astype(float)
+    F = 0.04 * (1 - m) + 0.5 * m
+    np.testing.assert_allclose(got, (1 - m) * (1 - F) * 0.5 / np.pi, rtol=8 * U, atol=0)
 
 
 def test_metals_have_no_diffuse_part(library, mode):
