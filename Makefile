@@ -29,7 +29,7 @@ render: $(VENV)/.harness ## the scene of project.sprj, to build/render.png
 	$(BIN)/harness render project.sprj -o build/render.png --size 1920x1080 --supersample 2
 
 test: $(VENV)/.harness $(VENV)/.test ## all tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto
 
 test-conformance: $(VENV)/.harness $(VENV)/.test ## the pictures of SHADERed itself, case by case
 	$(BIN)/python -m pytest -rA tests/harness/test_conformance.py
