@@ -6,7 +6,6 @@ import base64
 import io
 import os
 import re
-import shutil
 import stat
 import subprocess
 import sys
@@ -17,95 +16,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from sprj_files import QUAD_VERT, shader_pass, texture, write_project, write_texture
+from submission_files import NAMES, TINT, replace, write_small
 
 from harness import HarnessError, render, sprj, submission
 from harness.submission import contents, evidence, exercise
 
 SIZE = (64, 36)
-
-FRAGMENT = """#version 330
-#ifdef GL_GOOGLE_include_directive
-#extension GL_GOOGLE_include_directive : enable
-#endif
-#include "library/tint.glsl"
-uniform sampler2D picture;
-in vec2 uv;
-out vec4 color;
-void main()
-{
-    if (uv.x > 0.5)
-        discard;
-    color = vec4(tint(texture(picture, uv).rgb), 1.0);
-}
-"""
-TINT = """// What is above.
-
-// A colour made redder; <b> & co. are no tags.
-vec3 tint(
-    vec3 c)
-{
-    return c * vec3(1.0, 0.5, 0.25);
-}
-"""
-EXERCISE = """
-title = "Small & sweet"
-course = "Course"
-summary = "Summary"
-alt = "A half"
-tests = ["tests"]
-
-[[part]]
-name = "1"
-title = "A tint"
-points = 3
-asked = "A tint."
-done = "It is there."
-tests = ["tests/test_small.py::test_that_passes"]
-[[part.region]]
-pass = "Quad"
-caption = "The left half."
-[[part.shader]]
-file = "shaders/library/tint.glsl"
-function = "tint"
-"""
-TESTS = """import pytest
-
-@pytest.mark.parametrize("n", range(3))
-def test_that_passes(n):
-    pass
-
-@pytest.mark.skip
-def test_that_is_skipped():
-    pass
-"""
-NAMES = [
-    "project.sprj",
-    "report.html",
-    "shaders/library/tint.glsl",
-    "shaders/quad.frag",
-    "shaders/quad.vert",
-    "textures/red.png",
-]
-
-
-def write_small(folder: Path) -> Path:
-    """A project of one pass, drawn to the left half, with an include, a texture, tests, and files it does not use."""
-    for name in ("shaders/library", "textures", "docs", "tests"):
-        (folder / name).mkdir(parents=True)
-    (folder / "shaders/quad.vert").write_text(QUAD_VERT)
-    (folder / "shaders/quad.frag").write_text(FRAGMENT)
-    (folder / "shaders/library/tint.glsl").write_text(TINT)
-    (folder / "shaders/unused.glsl").write_text(TINT)
-    write_texture(folder, "textures/red.png", (200, 100, 50))
-    write_texture(folder, "textures/unused.png")
-    (folder / "textures/make_textures.py").write_text("")
-    (folder / exercise.FILE).write_text(EXERCISE)
-    (folder / "tests/test_small.py").write_text(TESTS)
-    layout = '<inputlayout><item value="Position" semantic="P" /><item value="Texcoord" semantic="T" /></inputlayout>'
-    passes = shader_pass(fragment="shaders/quad.frag", extra=layout).replace('"quad.vert"', '"shaders/quad.vert"')
-    settings = '<entry type="ipaths"><path>shaders</path></entry>'
-    return write_project(folder, passes, objects=texture("textures/red.png"), settings=settings)
 
 
 def make(project: Path, **options):
@@ -152,12 +68,6 @@ def refusal(project: Path, **options) -> str:
 def harness(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
     command = [sys.executable, "-m", "harness.cli", "submission", *arguments]
     return subprocess.run(command, capture_output=True, text=True, cwd=folder, timeout=120)
-
-
-def replace(path: Path, old: str, new: str) -> None:
-    text = path.read_text()
-    assert old in text
-    path.write_text(text.replace(old, new))
 
 
 # ---- The archive -----------------------------------------------------------------------------------------------------
@@ -216,55 +126,6 @@ def test_an_archive_that_is_there_stays_when_the_next_is_refused(small):
         make(small)
     assert output.read_bytes() == b"before"
     assert [p.name for p in output.parent.iterdir()] == ["submission.zip"]
-
-
-# ---- The files of a project ------------------------------------------------------------------------------------------
-
-
-def test_a_models_parts_are_its_files(small):
-    folder = small.parent
-    (folder / "ring.bin").write_bytes(b"")
-    (folder / "ring.gltf").write_text('{"buffers": [{"uri": "ring.bin"}, {"uri": "data:,"}], "images": [{}]}')
-    (folder / "ring.mtl").write_text("")
-    (folder / "ring.obj").write_text("mtllib ring.mtl\n")
-    models = "".join(f'<item name="{n}" type="model"><filepath>ring.{n}</filepath></item>' for n in ("gltf", "obj"))
-    replace(small, "</items>", models + "</items>")
-    assert {"ring.gltf", "ring.bin", "ring.obj", "ring.mtl"} <= contents.files(small).keys()
-
-
-def test_what_an_inactive_pass_names_is_packed(small):
-    replace(small, 'active="true"', 'active="false"')
-    assert set(contents.files(small)) == set(NAMES) - {"report.html"}
-
-
-@pytest.mark.parametrize("path", ["/textures/red.png", "C:/red.png", "\\\\server\\red.png"])
-def test_an_absolute_path_is_refused(small, path):
-    replace(small, 'path="textures/red.png"', f'path="{path}"')
-    with pytest.raises(HarnessError, match=r"project.sprj:\d+: .*is an absolute path"):
-        contents.files(small)
-
-
-def test_a_path_out_of_the_folder_is_refused(small):
-    shutil.copy(small.parent / "textures/red.png", small.parent.parent)
-    replace(small, 'path="textures/red.png"', 'path="../red.png"')
-    with pytest.raises(HarnessError, match=r'project.sprj:\d+: "../red.png" lies outside'):
-        contents.files(small)
-
-
-def test_a_link_out_of_the_folder_is_refused(small):
-    target = small.parent.parent / "red.png"
-    (small.parent / "textures/red.png").rename(target)
-    (small.parent / "textures/red.png").symlink_to(target)
-    with pytest.raises(HarnessError, match='"textures/red.png" lies outside'):
-        contents.files(small)
-
-
-@pytest.mark.parametrize("path", ["/home/me/tint.glsl", "C:\\Users\\me\\tint.glsl", "FOLDER/tint.glsl"])
-def test_a_path_of_somebodys_machine_in_a_file_is_refused(small, path):
-    path = path.replace("FOLDER", str(small.parent))
-    replace(small.parent / "shaders/library/tint.glsl", "// What is above.\n", f"// What\n// is in {path}\n")
-    with pytest.raises(HarnessError, match=r"tint.glsl:2: .*absolute path"):
-        contents.files(small)
 
 
 # ---- What is refused -------------------------------------------------------------------------------------------------
@@ -372,6 +233,10 @@ def test_the_report_needs_nothing_but_itself(page):
     assert all(target.startswith(("data:image/png;base64,", "#")) for target in links.targets)
     assert not links.tags & {"script", "link", "iframe", "object", "embed"}
     assert "@import" not in page and "url(" not in page
+
+
+def test_what_the_exercises_file_says_is_text(page):
+    assert "<h1>Small &lt;&amp; sweet&gt;</h1>" in page
 
 
 def test_the_report_quotes_a_function_with_its_comment_and_place(made, page):
