@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from .render import _size
+from .render import size
 
 SHORT = "show a .sprj live in a window"
 DESCRIPTION = """\
@@ -24,7 +24,7 @@ TIME_LIMIT = None
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The project, and the window's size."""
     parser.add_argument("project", metavar="PROJECT.sprj")
-    parser.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help="pixels (1280x720)")
+    parser.add_argument("--size", type=size, default=(1280, 720), metavar="WxH", help="pixels (1280x720)")
     parser.add_argument("--frames", type=_count, metavar="N", help="close after N rounds of events and drawing")
 
 
