@@ -36,7 +36,7 @@ test-conformance: $(VENV)/.harness $(VENV)/.test ## the pictures of SHADERed its
 
 test-backends: $(VENV)/.harness $(VENV)/.test ## all tests by EGL, and by GLFW on a display of their own
 	HARNESS_BACKEND=egl $(BIN)/python -m pytest
-	HARNESS_BACKEND=glfw xvfb-run -a $(BIN)/python -m pytest
+	HARNESS_BACKEND=glfw xvfb-run -a -s '-screen 0 1280x1024x24 -noreset' $(BIN)/python -m pytest
 
 # Each shader with the tests that know it, so that others need not be run to see that they do not use it.
 test-mutation: $(VENV)/.harness $(VENV)/.test ## whether the tests notice faults that are put into the shaders

@@ -16,8 +16,12 @@ from harness import NativeError, native
 SUITE = ["tests/harness/test_evaluation.py", "tests/harness/test_render.py"]
 
 
+# A server that does not start anew, deaf meanwhile, whenever nobody is connected.
+DISPLAY = ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24 -noreset"]
+
+
 def in_process(backend: str, *command: str) -> subprocess.CompletedProcess:
-    display = ["xvfb-run", "-a"] if backend == "glfw" and not os.environ.get("DISPLAY") else []
+    display = [*DISPLAY] if backend == "glfw" and not os.environ.get("DISPLAY") else []
     environment = {**os.environ, native.BACKEND_VARIABLE: backend}
     return subprocess.run([*display, sys.executable, *command], env=environment, capture_output=True, text=True)
 
