@@ -23,7 +23,7 @@ def project(pytester):
 
 
 def run(project, *options):
-    return project.runpytest_inprocess(*QUIET, *options)
+    return project.runpytest_subprocess(*QUIET, *options)  # a process has one context, which this one may hold
 
 
 # ---- The fixture shader ----------------------------------------------------------------------------------------------
