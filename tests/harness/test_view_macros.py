@@ -10,11 +10,23 @@ from harness.render import Renderer
 from harness.view_macros import Changes, Ladder
 
 LADDERS = {
-    "BRDF_D": (("D_EXERCISE", "D_CROSS"), "D_CROSS"),
-    "BRDF_V": (("V_EXACT", "V_HAMMON"), "V_EXACT"),
-    "BRDF_F": (("F_POW", "F_MULTIPLY"), "F_MULTIPLY"),
-    "BRDF_DIFFUSE": (("DIFFUSE_FRESNEL", "DIFFUSE_LAMBERT"), "DIFFUSE_FRESNEL"),
-    "SRGB_DECODE": (("SRGB_POWER", "SRGB_PIECEWISE", "SRGB_CUBIC"), "SRGB_POWER"),
+    "BRDF_D": (("D_EXERCISE", "D_CROSS", "D_ONE_MINUS", "D_PROJECT", "D_HALF"), "D_CROSS"),
+    "BRDF_V": (("V_EXACT", "V_HAMMON", "V_SCHLICK", "V_KARIS", "V_SEPARABLE", "V_KELEMEN"), "V_EXACT"),
+    "BRDF_F": (("F_POW", "F_MULTIPLY", "F_GAUSSIAN", "F_DIELECTRIC", "F_F82"), "F_MULTIPLY"),
+    "BRDF_DIFFUSE": (
+        (
+            "DIFFUSE_FRESNEL",
+            "DIFFUSE_LAMBERT",
+            "DIFFUSE_F0",
+            "DIFFUSE_SHIRLEY",
+            "DIFFUSE_BURLEY",
+            "DIFFUSE_EON",
+            "DIFFUSE_ENERGY",
+        ),
+        "DIFFUSE_FRESNEL",
+    ),
+    "BRDF_MULTI": (("MULTI_NONE", "MULTI_FITTED"), "MULTI_NONE"),
+    "SRGB_DECODE": (("SRGB_POWER", "SRGB_PIECEWISE", "SRGB_CUBIC", "SRGB_SQUARE"), "SRGB_POWER"),
     "TONE_CURVE": (("TONE_CLAMP", "TONE_REINHARD"), "TONE_CLAMP"),
 }
 MAPS = ("HAS_ALBEDO_MAP", "HAS_ROUGHNESS_MAP", "HAS_METALNESS_MAP", "HAS_NORMAL_MAP")
