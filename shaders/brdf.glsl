@@ -117,65 +117,71 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 // mirror, there is none: a light without extent is not seen in it.
 //
 // It equals shade_exercise() in exact arithmetic, step by step, a for the albedo and m for the metalness:
-//   1. With H = l + v not normalised, n.H = n.l + n.v, and l.h = |H|/2 = c, because l and v are unit. No division by |H|.
+//   1. With H = (l + v)/2, not normalised, n.H = (n.l + n.v)/2, and l.h = |H| = c, because l and v are unit. No division
+//      by |H|.
 //   2. |n x H|^2 + (n.H)^2 = |H|^2, because n is unit. For a small angle between n and h the cross product keeps the digits
 //      that 1 - (n.h)^2 has lost: the cosine of a small angle is all ones.
 //   3. So 1 + (n.h)^2 (alpha^2 - 1) = (|n x H|^2 + alpha^2 (n.H)^2) / |H|^2, and D = k^2/pi with
 //      k = alpha |H|^2 / (|n x H|^2 + alpha^2 (n.H)^2).
-//   4. With x = 1 - c and w = x^5, W = 1 - w is c + x (c + x (c + x (c + x c))), a sum of positive terms: nothing cancels as
-//      c goes to 0. In three steps: 1 - x^2 = c + c x, 1 - x^4 = (1 - x^2) + (1 - x^2) x^2, W = (1 - x^4) + x^4 c.
-//   5. F0 = 0.04 (1 - m) + m a, so F = F0 + (1 - F0) w = F0 W + w = A a + B with A = m W, B = f + w, f = 0.04 (1 - m) W.
-//   6. 1 - F = (1 - B) - A a, and 1 - B = W - f = Z.
+//   4. With x = 1 - c and q = c - c^2/2, 1 - x^2 = 2q, and 1 - x^4 = (1 - x^2)(1 + x^2) = 4 (q - q^2) = y. With w = x^5,
+//      w = x - x y, and W = 1 - w = c + x y: nothing cancels in W as c goes to 0, nor y's rounding grow in w.
+//   5. F0 = 0.04 (1 - m) + m a, so F = F0 + (1 - F0) w = F0 W + w = A a + B with A = m W, B = w + 0.04 G, G = (1 - m) W.
+//   6. 1 - F = (1 - B) - A a, and 1 - B = W - 0.04 G = Z.
 //   7. With S = D V n.l and E = (1 - m) n.l/pi the sum S F + E (1 - F) a is (S A + E Z - E A a) a + S B. Z >= A, since
-//      Z - A = 0.96 (1 - m) W: it is not negative. All but a is the same for the three colours.
+//      Z - A = 0.96 G: it is not negative. All but a is the same for the three colours.
+// A GPU clamps to 0...1, halves, doubles and quadruples what it computes for nothing: constants are arranged for that.
 vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 {
     float alpha = m.roughness * m.roughness;
     float alpha2 = alpha * alpha + 1e-26; // so that k <= 5e12 and S < 1e38: nothing here leaves float's range
     float NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, v), 0.0, 1.0);
-    float lit = (NoV > 0.0 ? NoL : 0.0) / PI; // n.l/pi, or 0 where the viewer is behind the surface
+    float behind = clamp(1.0 - 1e38 * NoV, 0.0, 1.0); // 1 where NoV is 0, the viewer behind the surface; else 0
+    float lit = clamp(NoL / (2.0 * PI) - behind, 0.0, 1.0); // n.l/2pi, which is below 1; 0 for a viewer behind
 
-    vec3 H = l + v;
-    float NoHH = NoL + NoV; // n.H where it matters: with both cosines positive
+    vec3 H = 0.5 * (l + v);
+    float NoHH = 0.5 * (NoL + NoV); // n.H where it matters: with both cosines positive
     vec3 nxH = cross(n, H);
     // |H|^2 times the squared sine and cosine of the angle between n and h. Where H is 0, 1e-37 makes 0/0 a number.
     float sin2 = nxH.x * nxH.x + (nxH.y * nxH.y + (nxH.z * nxH.z + 1e-37));
     float cos2 = NoHH * NoHH;
     float HH = sin2 + cos2;
+    float c = sqrt(HH);
 
+#if BRDF_V == V_HAMMON
+    float V = 0.25 / (mix(NoL * NoV, NoHH, alpha) + 1e-37);
+#else
+    float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
+    float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
+    float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
+#endif
 #if BRDF_D == D_EXERCISE
     float NoH = NoHH * inversesqrt(HH);
     float k = alpha / max(1.0 + NoH * NoH * (alpha2 - 1.0), alpha2);
 #else
     float k = alpha * HH / (sin2 + alpha2 * cos2);
 #endif
-#if BRDF_V == V_HAMMON
-    float V = 0.5 / (mix(2.0 * NoL * NoV, NoL + NoV, alpha) + 1e-37);
-#else
-    float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
-    float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
-    float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
-#endif
-    float S = k * k * (V * lit);
 
-    float c = 0.5 * sqrt(HH);
     float x = clamp(1.0 - c, 0.0, 1.0);
-    float x2 = x * x;
-    float x4 = x2 * x2;
-    float left2 = c * x + c;          // 1 - x^2
-    float left4 = left2 * x2 + left2; // 1 - x^4
-    float W = x4 * c + left4;         // 1 - x^5
+    float q = c - 0.5 * HH;      // (1 - x^2)/2
+    float y = 4.0 * (q - q * q); // 1 - x^4
+    float W = x * y + c;         // 1 - x^5
+#if BRDF_F == F_POW
+    float w = schlick_weight(c);
+#else
+    float w = x - x * y; // x^5
+#endif
+    float S = 2.0 * (k * k * (V * lit));
 
     float dielectric = 1.0 - m.metalness;
-    float f = DIELECTRIC_F0 * (dielectric * W);
     float A = m.metalness * W;
-    float B = schlick_weight(c) + f;
-    float E = dielectric * lit;
+    float G = dielectric * W;
+    float B = DIELECTRIC_F0 * G + w;
+    float E = 2.0 * (dielectric * lit);
 #if BRDF_DIFFUSE == DIFFUSE_LAMBERT
     return m.albedo * (S * A + E) + S * B;
 #else
-    float Z = W - f;
+    float Z = -DIELECTRIC_F0 * G + W;
     return m.albedo * (S * A + E * Z - E * A * m.albedo) + S * B;
 #endif
 }
