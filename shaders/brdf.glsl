@@ -89,27 +89,30 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 // mirror, there is none: a light without extent is not seen in it.
 //
 // It equals shade_exercise() in exact arithmetic, step by step, a for the albedo and m for the metalness:
-//   1. With H = l + v not normalised, n.H = n.l + n.v, and l.h = |H|/2 = c, because l and v are unit. No division by |H|.
+//   1. With H = (l + v)/2, not normalised, n.H = (n.l + n.v)/2, and l.h = |H| = c, because l and v are unit. No division
+//      by |H|.
 //   2. |n x H|^2 + (n.H)^2 = |H|^2, because n is unit. For a small angle between n and h the cross product keeps the digits
 //      that 1 - (n.h)^2 has lost: the cosine of a small angle is all ones.
 //   3. So 1 + (n.h)^2 (alpha^2 - 1) = (|n x H|^2 + alpha^2 (n.H)^2) / |H|^2, and D = k^2/pi with
 //      k = alpha |H|^2 / (|n x H|^2 + alpha^2 (n.H)^2).
-//   4. With x = 1 - c and w = x^5, W = 1 - w is c + x (c + x (c + x (c + x c))), a sum of positive terms: nothing cancels as
-//      c goes to 0. In three steps: 1 - x^2 = c + c x, 1 - x^4 = (1 - x^2) + (1 - x^2) x^2, W = (1 - x^4) + x^4 c.
-//   5. F0 = 0.04 (1 - m) + m a, so F = F0 + (1 - F0) w = F0 W + w = A a + B with A = m W, B = f + w, f = 0.04 (1 - m) W.
-//   6. 1 - F = (1 - B) - A a, and 1 - B = W - f = Z.
+//   4. With x = 1 - c and q = c - c^2/2, 1 - x^2 = 2q, and 1 - x^4 = (1 - x^2)(1 + x^2) = 4 (q - q^2) = y. With w = x^5,
+//      w = x - x y, and W = 1 - w = c + x y: nothing cancels in W as c goes to 0, nor y's rounding grow in w.
+//   5. F0 = 0.04 (1 - m) + m a, so F = F0 + (1 - F0) w = F0 W + w = A a + B with A = m W, B = w + 0.04 G, G = (1 - m) W.
+//   6. 1 - F = (1 - B) - A a, and 1 - B = W - 0.04 G = Z.
 //   7. With S = D V n.l and E = (1 - m) n.l/pi the sum S F + E (1 - F) a is (S A + E Z - E A a) a + S B. Z >= A, since
-//      Z - A = 0.96 (1 - m) W: it is not negative. All but a is the same for the three colours.
+//      Z - A = 0.96 G: it is not negative. All but a is the same for the three colours.
+// A GPU clamps to 0...1, halves, doubles and quadruples what it computes for nothing: constants are arranged for that.
 vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 {
     float alpha = m.roughness * m.roughness;
     float alpha2 = alpha * alpha + 1e-26; // so that k <= 5e12 and S < 1e38: nothing here leaves float's range
     float NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, v), 0.0, 1.0);
-    float lit = (NoV > 0.0 ? NoL : 0.0) / PI; // n.l/pi, or 0 where the viewer is behind the surface
+    float behind = clamp(1.0 - 1e38 * NoV, 0.0, 1.0); // 1 where NoV is 0, the viewer behind the surface; else 0
+    float lit = clamp(NoL / (2.0 * PI) - behind, 0.0, 1.0); // n.l/2pi, which is below 1; 0 for a viewer behind
 
-    vec3 H = l + v;
-    float NoHH = NoL + NoV; // n.H where it matters: with both cosines positive
+    vec3 H = 0.5 * (l + v);
+    float NoHH = 0.5 * (NoL + NoV); // n.H where it matters: with both cosines positive
 #if BRDF_D == D_CROSS || BRDF_D == D_PROJECT
 #if BRDF_D == D_PROJECT
     vec3 nxH = H - n * NoHH; // as long as n x H, where n is unit
@@ -125,28 +128,36 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
     float HH = dot(H, H) + 1e-37;
     float k = distribution_root(n, H, NoHH, alpha);
 #endif
+    float c = sqrt(HH);
 
 #if BRDF_V == V_EXACT
     float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
     float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
     float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
 #else
-    float V = visibility(NoL, NoV, 0.5 * sqrt(HH), alpha);
+    float V = visibility(NoL, NoV, c, alpha);
 #endif
 #if BRDF_D == D_HALF
-    float S = min(k * k / PI, 65504.0) * (V * lit * PI);
+    float S = 2.0 * (min(k * k / PI, 65504.0) * (V * lit * PI));
 #elif BRDF_V == V_KELEMEN
-    float S = min(k * k * (V * lit), 1e37); // at the horizons its V has no end that the peak of D could meet
+    float S = 2.0 * min(k * k * (V * lit), 1e37); // at the horizons its V has no end that the peak of D could meet
 #else
-    float S = k * k * (V * lit);
+    float S = 2.0 * (k * k * (V * lit));
 #endif
 
-    float c = 0.5 * sqrt(HH);
-    float w = schlick_weight(c);
 #if BRDF_F == F_GAUSSIAN
+    float w = schlick_weight(c);
     float W = 1.0 - w;
 #else
-    float W = fifth_rest(c); // 1 - w
+    float x = clamp(1.0 - c, 0.0, 1.0);
+    float q = c - 0.5 * HH;      // (1 - x^2)/2
+    float y = 4.0 * (q - q * q); // 1 - x^4
+    float W = x * y + c;         // 1 - x^5
+#if BRDF_F == F_POW
+    float w = schlick_weight(c);
+#else
+    float w = x - x * y; // x^5
+#endif
 #endif
     float dielectric = 1.0 - m.metalness;
     float A = m.metalness * W;
@@ -155,11 +166,11 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
     float B = m.metalness * w + dielectric * exact.x;
     float Z = A + dielectric * exact.y;
 #else
-    float f = DIELECTRIC_F0 * (dielectric * W);
-    float B = w + f;
-    float Z = W - f;
+    float G = dielectric * W;
+    float B = DIELECTRIC_F0 * G + w;
+    float Z = -DIELECTRIC_F0 * G + W;
 #endif
-    float E = dielectric * lit;
+    float E = 2.0 * (dielectric * lit);
 
     // The same for each of the rungs: S F + E times what is scattered. Three colours take part only where they must.
 #if BRDF_MULTI == MULTI_FITTED || BRDF_F == F_F82 || BRDF_DIFFUSE == DIFFUSE_EON

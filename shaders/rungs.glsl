@@ -62,7 +62,7 @@ float distribution(vec3 l, vec3 v, vec3 n, float alpha)
 // V_SmithGGXCorrelated replaced by linear interpolation in alpha; exact at alpha 0 and 1.
 float V_Hammon(float NoL, float NoV, float alpha)
 {
-    return 0.5 / (mix(2.0 * NoL * NoV, NoL + NoV, alpha) + 1e-37);
+    return 0.25 / (mix(NoL * NoV, 0.5 * (NoL + NoV), alpha) + 1e-37); // a GPU halves for nothing
 }
 
 // Schlick's rational function in place of each of Smith's two factors, x/(x (1 - k) + k) [Schlick 1994, eq. 19].

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from harness import CallError, HarnessError, isa, shader
+from harness import CallError, HarnessError, isa, ladder, shader
 
 pytestmark = pytest.mark.skipif(isa.unavailable() is not None, reason=str(isa.unavailable()))
 
@@ -31,25 +31,21 @@ def assert_equal_tables(got, want):
 
 @pytest.fixture(scope="module")
 def rungs(root):
-    """Name -> function: what the project's shaders offer a choice of."""
-    macros = [
-        {},
-        {"BRDF_D": "D_EXERCISE"},
-        {"BRDF_V": "V_HAMMON"},
-        {"BRDF_F": "F_POW"},
-        {"BRDF_DIFFUSE": "DIFFUSE_LAMBERT"},
-    ]
+    """Name -> function: shade() on every rung and in every preset, what a rung is of by itself, and the exercise's own."""
+    steps = ladder.load(root / "shaders" / "ladder.toml")
     brdf, color = root / "shaders" / "brdf.glsl", root / "shaders" / "color.glsl"
-    found = {}
-    for defines in macros:
-        compiled = shader(brdf, defines)
-        for name in ("shade", "shade_exercise"):
-            if name == "shade" or not defines or "BRDF_F" in defines:
-                found[" ".join([name, *defines.values()])] = compiled[name]
+    found = {"shade": shader(brdf)["shade"]}
+    for term in steps.terms:
+        for rung in term.rungs:
+            file = root / "shaders" / term.file
+            name = "shade" if file == brdf else term.function
+            found[f"{name} {rung.value}"] = shader(file, {term.macro: rung.value})[name]
+    for preset in steps.presets:
+        found[f"shade as {preset.name}"] = shader(brdf, preset.macros)["shade"]
+    for rung in ("F_MULTIPLY", "F_POW"):
+        found[f"shade_exercise {rung}"] = shader(brdf, {"BRDF_F": rung})["shade_exercise"]
     for name in ("D_GGX", "V_SmithGGXCorrelated", "V_Hammon", "F_Schlick"):
         found[name] = shader(brdf)[name]
-    for rung in ("SRGB_POWER", "SRGB_PIECEWISE", "SRGB_CUBIC"):
-        found[f"srgb_to_linear {rung}"] = shader(color, {"SRGB_DECODE": rung})["srgb_to_linear"]
     return found
 
 
@@ -82,8 +78,8 @@ def test_what_every_rung_costs(rungs, costs, root):
 
 def test_the_arrangement_of_the_exercise_costs_what_was_found_elsewhere(costs):
     """Its cycles beyond a null stage with another program and harness: 336 on GCN 5, 138 on RDNA 2; with pow 360."""
-    assert costs["shade_exercise", "vega10"].inverse_throughput == 336
-    assert costs["shade_exercise", "navi21"].inverse_throughput == 138
+    assert costs["shade_exercise F_MULTIPLY", "vega10"].inverse_throughput == 336
+    assert costs["shade_exercise F_MULTIPLY", "navi21"].inverse_throughput == 138
     assert costs["shade_exercise F_POW", "vega10"].inverse_throughput == 360
 
 

@@ -28,22 +28,28 @@ def names(scene):
     """The numbers that the comment speaks of, each from its definition there: none from another that a step proves."""
     s = SimpleNamespace(l=scene.l, v=scene.v, n=scene.n, albedo=[mp.mpf(a) for a in scene.material.albedo])
     s.m, s.alpha = mp.mpf(scene.material.metalness), mp.mpf(scene.material.roughness) ** 2
-    s.H = tuple(p + q for p, q in zip(s.l, s.v, strict=True))
+    s.H = tuple((p + q) / 2 for p, q in zip(s.l, s.v, strict=True))
     s.h = unit(s.H)
     s.nH, s.c = dot(s.n, s.H), dot(s.l, s.h)
     s.HH, s.sin2 = dot(s.H, s.H), dot(cross(s.n, s.H), cross(s.n, s.H))
     s.x = 1 - s.c
     s.w = s.x**5
-    s.W = 1 - s.w
-    s.f = DIELECTRIC_F0 * (1 - s.m) * s.W
-    s.A, s.B = s.m * s.W, s.f + s.w
-    s.Z = s.W - s.f
+    s.q, s.y, s.W = (1 - s.x**2) / 2, 1 - s.x**4, 1 - s.w
+    s.A, s.G = s.m * s.W, (1 - s.m) * s.W
+    s.B, s.Z = s.w + DIELECTRIC_F0 * s.G, s.W - DIELECTRIC_F0 * s.G
     return s
 
 
 @pytest.fixture(scope="module")
 def everywhere():
     return [names(scene) for scene in scenes()]
+
+
+def highlight(s):
+    """D V, from the exercise's terms."""
+    return reference.D_GGX(dot(s.n, s.h), s.alpha) * reference.V_SmithGGXCorrelated(
+        dot(s.n, s.l), dot(s.n, s.v), s.alpha
+    )
 
 
 def fresnel(s, albedo):
@@ -53,8 +59,8 @@ def fresnel(s, albedo):
 
 def test_step_1_cosines_without_a_unit_half_vector(everywhere):
     for s in everywhere:
-        assert abs(dot(s.n, s.l) + dot(s.n, s.v) - s.nH) < CLOSE
-        assert abs(mp.sqrt(s.HH) / 2 - s.c) < CLOSE
+        assert abs((dot(s.n, s.l) + dot(s.n, s.v)) / 2 - s.nH) < CLOSE
+        assert abs(mp.sqrt(s.HH) - s.c) < CLOSE
         assert abs(dot(s.n, s.h) * mp.sqrt(s.HH) - s.nH) < CLOSE
 
 
@@ -70,18 +76,19 @@ def test_step_3_the_distribution_from_the_cross_product(everywhere):
         assert abs(k**2 / PI / reference.D_GGX(dot(s.n, s.h), s.alpha) - 1) < CLOSE / s.alpha**2
 
 
-def test_step_4_one_minus_the_fifth_power_is_a_sum_of_positive_terms(everywhere):
+def test_step_4_one_minus_the_fifth_power_without_cancelling(everywhere):
     for s in everywhere:
         c, x = s.c, s.x
-        terms = [c, x * c, x**2 * c, x**3 * c, x**4 * c]
-        assert min(terms) >= 0
-        assert abs(mp.fsum(terms) - s.W) < CLOSE
-        assert abs(c + x * (c + x * (c + x * (c + x * c))) - s.W) < CLOSE
-        left2 = c + c * x
-        left4 = left2 + left2 * x**2
-        assert abs(left2 - (1 - x**2)) < CLOSE
-        assert abs(left4 - (1 - x**4)) < CLOSE
-        assert abs(left4 + x**4 * c - s.W) < CLOSE
+        q = c - c**2 / 2
+        y = 4 * (q - q**2)
+        assert abs(2 * q - (1 - x**2)) < CLOSE
+        assert abs((1 - x**2) * (1 + x**2) - y) < CLOSE
+        assert abs(1 - x**4 - y) < CLOSE
+        assert abs(x - x * y - s.w) < CLOSE
+        assert abs(c + x * y - s.W) < CLOSE
+        # Where c is small, so is what is taken off: q is c but for c/2 of it, y is 4q but for q of it
+        assert min(c, x * y) >= 0
+        assert c**2 / 2 <= c / 2 and q**2 <= q / 2
 
 
 def test_step_5_fresnel_is_affine_in_the_albedo(everywhere):
@@ -106,7 +113,7 @@ def test_step_7_the_whole_is_a_quadratic_in_the_albedo_and_not_negative(everywhe
             F = fresnel(s, albedo)
             exercise = (D * V * F + (1 - s.m) * (1 - F) * albedo / PI) * NoL
             assert abs((S * s.A + E * s.Z - E * s.A * albedo) * albedo + S * s.B - exercise) < CLOSE * (1 + S)
-        assert abs(s.Z - s.A - mp.mpf(96) / 100 * (1 - s.m) * s.W) < CLOSE
+        assert abs(s.Z - s.A - mp.mpf(96) / 100 * s.G) < CLOSE
         assert s.Z >= s.A
 
 
@@ -129,12 +136,18 @@ def test_the_shaders_locals_are_what_the_comment_calls_them(root):
         "HH": lambda s: s.HH,
         "k": lambda s: mp.sqrt(PI * reference.D_GGX(dot(s.n, s.h), s.alpha)),
         "V": lambda s: reference.V_SmithGGXCorrelated(dot(s.n, s.l), dot(s.n, s.v), s.alpha),
+        "lit": lambda s: dot(s.n, s.l) / (2 * PI),
         "c": lambda s: s.c,
+        "x": lambda s: s.x,
+        "q": lambda s: s.q,
+        "y": lambda s: s.y,
         "W": lambda s: s.W,
-        "f": lambda s: s.f,
+        "w": lambda s: s.w,
         "A": lambda s: s.A,
+        "G": lambda s: s.G,
         "B": lambda s: s.B,
         "E": lambda s: (1 - s.m) * dot(s.n, s.l) / PI,
+        "S": lambda s: highlight(s) * dot(s.n, s.l),
         "Z": lambda s: s.Z,
     }.items():
         np.testing.assert_allclose(values[name], [float(of(s)) for s in want], rtol=2e-5, atol=1e-7, err_msg=name)
