@@ -117,6 +117,17 @@ def test_back_side_and_horizon_are_black(library, mode, cos_l, cos_v, roughness)
     assert (got == 0).all()
 
 
+@pytest.mark.parametrize("cos_v", [2.0**-126, 1e-37, 1e-30, 1e-10])
+def test_a_viewer_however_little_above_the_horizon_sees_the_surface(library, mode, cos_v):
+    """Down to the smallest normal float. White and rough: the highlight has no edge here, and both parts count."""
+    l, v, n = (np.float32(a) for a in ((0.6, 0, 0.8), (-1, 0, cos_v), (0, 0, 1)))  # noqa: E741
+    white = reference.Material((1.0, 1.0, 1.0), 0.0, 1.0)
+    got = library("brdf.glsl", mode).shade(l, v, n, {"albedo": [1, 1, 1], "metalness": 0, "roughness": 1})
+    want = reference.shade(*(reference.vector(*map(float, a)) for a in (l, v, n)), white)
+    # |l|^2 is 1 to 2 U only, which the reference's h takes along and shade's does not: with the dozen roundings, 16 U
+    np.testing.assert_allclose(got, np.array(want, float), rtol=16 * U, atol=0)
+
+
 def test_a_mirror_shows_its_diffuse_part_alone(library, mode):
     """Roughness 0 with h = n: no highlight from a light without extent, (1 - F) albedo/pi NoL stays."""
     albedo = np.float32([0.8, 0.4, 0.1])
