@@ -18,11 +18,34 @@ exact = "GAIN_ONE"
 inputs = {{ x = "[1,2]" }}
 {rungs}
 
+[[term]]
+name = "tone"
+title = "Tone"
+macro = "TONE"
+file = "tone.glsl"
+function = "tone"
+exact = "TONE_TWICE"
+inputs = {{ c = "[0,1]" }}
+
+[[term.rung]]
+value = "TONE_PLAIN"
+title = "Plain"
+source = "by hand"
+domain = "everywhere"
+suits = []
+
+[[term.rung]]
+value = "TONE_TWICE"
+title = "Twice"
+source = "by hand"
+domain = "everywhere"
+suits = []
+
 [[preset]]
 name = "exact"
 title = "Exact"
 source = "by hand"
-macros = {{ GAIN = "GAIN_ONE" }}
+macros = {{ GAIN = "GAIN_ONE", TONE = "TONE_TWICE" }}
 """
 RUNG = """
 [[term.rung]]
@@ -58,6 +81,14 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
     return m.albedo * gain(max(dot(n, l), 0.0) * 0.318309886 + m.roughness * m.metalness * 0.0);
 }
 """
+TONE = """
+#define TONE_PLAIN 0
+#define TONE_TWICE 1
+#ifndef TONE
+#define TONE TONE_PLAIN
+#endif
+float tone(float c) { return c * (1.0 + float(TONE)); }
+"""
 
 
 @pytest.fixture
@@ -66,8 +97,9 @@ def small(tmp_path):
 
     def write(rungs=("GAIN_ONE", "GAIN_MORE"), model: str = MODEL):
         (tmp_path / "brdf.glsl").write_text(model)
-        body = "color = vec4(vec3(gain(0.4)), 1.0);"
-        project = write_quad(tmp_path, body, '#extension GL_GOOGLE_include_directive : enable\n#include "brdf.glsl"')
+        (tmp_path / "tone.glsl").write_text(TONE)
+        body = "color = vec4(vec3(tone(gain(0.2))), 1.0);"
+        project = write_quad(tmp_path, body, '#include "brdf.glsl"\n#include "tone.glsl"')
         (tmp_path / ladder.FILE).write_text(LADDER.format(rungs="".join(map(RUNG.format, rungs))))
         return project, ladder.load(tmp_path / ladder.FILE)
 

@@ -18,11 +18,20 @@ def read(small, **how):
 
 def test_every_rung_and_preset_is_a_choice(small):
     project, ladder = read(small)
-    one, more, exact = choices(project, ladder)
-    assert [c.name for c in (one, more, exact)] == ["GAIN_ONE", "GAIN_MORE", "exact"]
+    found = {c.name: c for c in choices(project, ladder)}
+    assert list(found) == ["GAIN_ONE", "GAIN_MORE", "TONE_PLAIN", "TONE_TWICE", "exact"]
+    more, plain, exact = found["GAIN_MORE"], found["TONE_PLAIN"], found["exact"]
     assert (more.own, more.whole, exact.own) == ("gain", "shade", "shade")
-    assert more.macros == more.scene == {"GAIN": "GAIN_MORE"} and more.exact == more.reference == {"GAIN": "GAIN_ONE"}
+    assert (plain.own, plain.whole) == ("tone", "tone"), "its file has no shade()"
+    assert more.macros == {"GAIN": "GAIN_MORE"} and more.exact == {"GAIN": "GAIN_ONE"}
     assert more.function("gain")(2.0) == 2.5 and more.function("gain", more.exact)(2.0) == 2
+
+
+def test_a_picture_differs_from_the_references_by_the_rung_alone(small):
+    """Though the default of another term is not the reference's."""
+    (more,) = choices(*read(small), "GAIN_MORE")
+    assert more.reference == {"GAIN": "GAIN_ONE", "TONE": "TONE_TWICE"}
+    assert more.scene == {"GAIN": "GAIN_MORE", "TONE": "TONE_TWICE"}
 
 
 def test_one_by_its_name(small):
@@ -32,22 +41,8 @@ def test_one_by_its_name(small):
         choices(project, ladder, "GAIN_MROE")
 
 
-def test_a_picture_differs_by_the_rung_alone(root):
-    """Where the defaults are not the reference preset, as with the decoding of sRGB, the picture takes the preset's."""
-    from harness import ladder
-
-    project = sprj.read(root / "project.sprj")
-    (root_ladder,) = [ladder.of_project(project)]
-    exact = root_ladder.preset("exact").macros
-    try:
-        found = choices(project, root_ladder, "V_HAMMON")
-    except LadderError as error:
-        pytest.skip(f"the shaders are not there yet: {error}")
-    assert found[0].scene == {**exact, "BRDF_V": "V_HAMMON"} and found[0].macros == {"BRDF_V": "V_HAMMON"}
-
-
 def test_the_defaults_are_those_of_the_shaders(small):
-    assert defaults(*read(small)) == {"GAIN": "GAIN_ONE"}
+    assert defaults(*read(small)) == {"GAIN": "GAIN_ONE", "TONE": "TONE_PLAIN"}
 
 
 def test_it_can_be_sent_to_another_process_after_it_was_compiled(small):

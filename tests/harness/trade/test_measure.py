@@ -52,7 +52,7 @@ def test_a_rung_that_is_a_quarter_too_bright(rung):
     assert found["model"]["max"] == pytest.approx(0.25, rel=1e-12)
     # 1.25 x is x + x/4: a product that float32 rounds by half a unit at most
     assert 0 < found["roundoff"]["precise"]["max"] <= 2.0**-24 < found["roundoff"]["mediump"]["max"] <= 2.0**-10
-    # the quad shows 0.4, and 0.5 with it: 102 and 128 (127.5 rounds up)
+    # the quad shows twice 0.2, and twice 0.25 with it: 102 and 128 (127.5 rounds up)
     assert found["scene"] | {"flip": None} == {"max": 26, "mean": 26, "flip": None, "changed": 1}
     assert found["extremes"] == dict.fromkeys(tasks.MODES, {"non_finite": 0, "negative": 0}) | {"inputs": 4096}
     assert found["energy"]["furnace_max"] == pytest.approx(1.25 * LAMBERT, abs=1e-8)
@@ -116,13 +116,13 @@ def test_all_are_measured_by_other_processes_as_here(small):
 
 
 def test_what_compiles_to_the_same_text_is_measured_once(small):
-    """The exact rung and the exact preset are the same shade(): of 3 choices two are sound, and two pictures drawn."""
+    """The exact rungs and the exact preset are the same shade(), and the same picture."""
     path, ladder = small()
 
     work = tasks.tasks(str(path), choices(sprj.read(path), ladder))
     kinds = [type(task).__name__ for task, _ in work]
-    assert (kinds.count("Soundness"), kinds.count("Errors"), kinds.count("Picture")) == (2, 3, 2)
-    assert sorted(k for task, places in work for k in places if isinstance(task, tasks.Soundness)) == [0, 1, 2]
+    assert (kinds.count("Soundness"), kinds.count("Errors"), kinds.count("Picture")) == (4, 5, 3)
+    assert sorted(k for task, places in work for k in places if isinstance(task, tasks.Soundness)) == [0, 1, 2, 3, 4]
 
 
 def test_a_rung_that_does_not_compile_is_told_with_its_line(small):

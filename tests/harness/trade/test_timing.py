@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -73,8 +75,10 @@ class _Pretended:
 
 
 def test_a_time_that_does_not_grow_is_found_out():
-    assert timing._grows(_Pretended(lambda loops: loops * 1e-3), 64)
-    assert not timing._grows(_Pretended(lambda loops: 1e-3), 64)
+    """Even where a busy machine makes five of six runs three times as long."""
+    busy = itertools.cycle([3, 3, 3, 3, 3, 3, 3, 1, 1, 3, 3, 3])
+    assert timing._grows(_Pretended(lambda loops: loops * 1e-3 * next(busy)), 64)
+    assert not timing._grows(_Pretended(lambda loops: 1e-3 * next(busy)), 64)
 
 
 def test_the_loop_is_made_long_enough_and_no_longer_than_llvmpipe_bears():
