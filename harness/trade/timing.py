@@ -36,6 +36,7 @@ LOOPS = 4, 1 << 12  # evaluations of an invocation, at least and at most: llvmpi
 #: of the shortest of so many times of a loop and of one half as long: less, and evaluations were left out
 GROWTH = 1.3
 PAIRS = 6
+ATTEMPTS = 4
 #: a step of a Weyl sequence: the fractions of the square roots of primes are as irrational as it gets
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53)
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast")
@@ -164,6 +165,7 @@ class _Stage:
     """A compiled stage."""
 
     def __init__(self, text: str):
+        native.open_context()
         self._program = native.Program.compute(text)
         self._out = np.empty((INVOCATIONS, 1), np.float32)
 
@@ -220,9 +222,12 @@ def _time(job: Job, values: np.ndarray, grown: bool, medians: Sequence[float]) -
 def _grows(stage: _Stage, loops: int) -> bool:
     """Whether more evaluations take longer: a compiler that sees no use in some leaves them out."""
     stage.run(loops)  # the driver compiles at the first
-    pairs = [(stage.run(loops), stage.run(loops // 2)) for _ in range(PAIRS)]
-    long, short = map(min, zip(*pairs, strict=True))  # what a busy machine adds is not in the shortest
-    return long >= GROWTH * short
+    for _ in range(ATTEMPTS):
+        pairs = [(stage.run(loops), stage.run(loops // 2)) for _ in range(PAIRS)]
+        long, short = map(min, zip(*pairs, strict=True))  # what a busy machine adds is seldom in the shortest
+        if long >= GROWTH * short:
+            return True
+    return False
 
 
 def _enough(stage: _Stage) -> int:
