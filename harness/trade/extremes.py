@@ -49,8 +49,6 @@ def inputs(count: int) -> dict[str, np.ndarray]:
     turn = sampling.rotations(len(turned), random)
     for vectors in (l, v, n):
         vectors[turned] = np.einsum("nij,nj->ni", turn, vectors[turned])
-    opposite = kind == 2
-    v[opposite] = -l[opposite]
     grey = random.random((count, 1)) < 0.5
     albedo = _shares((count, 3), random)
     made = {

@@ -60,6 +60,12 @@ def test_the_null_stage_makes_the_same_inputs(job):
     np.testing.assert_allclose(got, expected.sum(axis=0), rtol=0, atol=2e-5)
 
 
+def test_macros_that_change_nothing_change_nothing(functions):
+    """So that what is the same machine code has the same time."""
+    plain, other = (timing.job(functions(TEXT, defines=d).f, DOMAIN, 0) for d in ({}, {"UNUSED": "1"}))
+    assert plain == other
+
+
 def test_inputs_are_spread_evenly():
     """So that no rung is timed at other inputs than surfaces have: 8 numbers in 10 parts of 0 ... 1."""
     made = numbers(8).reshape(-1, 8)
