@@ -105,6 +105,9 @@ $(VENV)/.bench: pyproject.toml | $(VENV)/.test
 	@./setup/apt.sh bench
 	$(call install_extra,bench)
 
+$(VENV)/.trade: pyproject.toml | $(VENV)/.harness
+	$(call install_extra,trade)
+
 # Built again with what is there now: the tests of costs run from then on, and are skipped before.
 $(VENV)/.cost: | $(VENV)/.harness
 	@./setup/apt.sh cost
