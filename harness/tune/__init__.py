@@ -1,0 +1,1 @@
+"""Only what a scene requires: the cheapest shaders of a project that keep its picture within a budget."""

@@ -1,0 +1,135 @@
+"""What the fragment stage of a pass costs for a pixel, under any macros: the whole of it, as it stands in the project.
+
+By the machine code that Mesa's AMD driver makes of it for a chip that need not be there, uniforms as a buffer and
+textures as textures; where that cannot be had, by weighted SPIR-V operations, and the reason is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .. import glsl, isa, native, programs, spirv, spirv_cost
+from ..cost_stage import VERSION
+from ..errors import NativeError
+from ..native import Stage
+from ..project import Pass, Project
+
+_DECORATE, _LOCATION, _BINDING = 71, 30, 33
+#: what harness_isa has room for
+_TEXTURES = 16
+_FROM_FLOAT = {"float": "{}", "int": "int(64.0 * {})", "uint": "uint(64.0 + 32.0 * {})"}
+
+
+@dataclass(frozen=True)
+class StageCost:
+    """Of one pixel's shader. ``cycles`` are those of a wave of 64 on the chip, by its inverse throughput; where there
+    is no chip, weighted SPIR-V operations, and then there are no ``instructions`` and no ``vgprs``."""
+
+    cycles: float
+    instructions: int | None = None
+    vgprs: int | None = None
+
+
+class Costs:
+    """Counts the fragment stages of a project's passes, each text once."""
+
+    def __init__(self, project: Project, passes: Sequence[Pass], target: str):
+        """NativeError when there is no chip ``target``. Whether it can be asked is tried on the ``passes``."""
+        self._project, self._target = project, target
+        self._known: dict[str, StageCost] = {}
+        #: why SPIR-V operations are counted, or None when machine code is
+        self.reason = isa.unavailable()
+        self.driver: str | None = None
+        if self.reason is None:
+            try:
+                self.of(passes)
+            except NativeError as error:
+                self.reason = error.message
+        if self.reason is not None:
+            self._known.clear()
+
+    @property
+    def unit(self) -> str:
+        """What is counted."""
+        return "SPIR-V operations" if self.reason else f"{self._target} cycles"
+
+    def of(self, passes: Sequence[Pass]) -> list[StageCost]:
+        """The costs of the passes' fragment stages under the macros that they have. GlslError for what does not
+        compile."""
+        sources = [programs.sources(self._project, p)[Stage.FRAGMENT] for p in passes]
+        new = {s.text: s for s in sources if s.text not in self._known}
+        try:
+            if self.reason is not None:
+                counted = [StageCost(spirv_cost.count_stage(native.glsl_spirv(Stage.FRAGMENT, text))) for text in new]
+            else:
+                found = isa.whole([_stages(text) for text in new], self._target) if new else []
+                self.driver = found[0].driver if found else self.driver
+                counted = [StageCost(c.inverse_throughput, c.instructions, c.vgprs) for c in found]
+        except NativeError:
+            for source in new.values():  # is it the user's text?
+                _check(source)
+            raise
+        self._known |= dict(zip(new, counted, strict=True))
+        return [self._known[s.text] for s in sources]
+
+
+def _check(source: glsl.Source) -> None:
+    try:
+        native.glsl_check(Stage.FRAGMENT, source.text)
+    except NativeError as error:
+        raise source.error(str(error)) from None
+
+
+def _stages(text: str) -> tuple[np.ndarray, np.ndarray]:
+    """SPIR-V of a fragment stage, and of a vertex stage that gives it values of which nothing can be told."""
+    fragment = native.glsl_spirv_vulkan(Stage.FRAGMENT, VERSION + "\n" + text.partition("\n")[2].rstrip("\n") + "\n")
+    module, words = spirv.read(fragment), fragment.tolist()
+    locations = {o[0]: o[2] for code, o in spirv.instructions(words) if code == _DECORATE and o[1] == _LOCATION}
+    inputs = [(locations[v.id], v) for v in module.variables.values() if v.storage == spirv.INPUT and v.id in locations]
+    return native.glsl_spirv_vulkan(Stage.VERTEX, _vertex(inputs)), _rebound(fragment, module)
+
+
+def _vertex(inputs: Sequence[tuple[int, spirv.Variable]]) -> str:
+    """A vertex stage that writes these inputs of a fragment stage, by location."""
+    head, body, unknown = [VERSION], ["gl_Position = vec4(0.0);"], _unknown()
+    for location, variable in inputs:
+        kind, name = variable.type, f"hn_out{location}"
+        if kind.number is None or kind.number.kind not in _FROM_FLOAT or kind.number.width != 32:
+            raise NativeError(f'the input "{variable.name}" is a {kind}, which is not counted')
+        element, count = (kind.element, kind.length) if kind.kind == "array" else (kind, 1)
+        if element.kind == "array":
+            raise NativeError(f'the input "{variable.name}" is a {kind}, which is not counted')
+        size = int(np.prod(element.shape, dtype=int))
+        flat = "" if kind.number.kind == "float" else "flat "
+        head.append(f"layout(location = {location}) {flat}out {element} {name}{f'[{count}]' * (kind.kind == 'array')};")
+        for k in range(count):
+            numbers = ", ".join(_FROM_FLOAT[kind.number.kind].format(next(unknown)) for _ in range(size))
+            body.append(f"{name}{f'[{k}]' * (kind.kind == 'array')} = {element}({numbers});")
+    return "\n".join([*head, "void main()", "{", *body, "}", ""])
+
+
+def _unknown() -> Iterator[str]:
+    k = 0
+    while True:
+        yield f"sin(float(gl_VertexIndex) + {k}.5)"
+        k += 1
+
+
+def _rebound(words: np.ndarray, module: spirv.Module) -> np.ndarray:
+    """The module with the bindings that harness_isa knows: the uniforms' buffer is 0, textures come after it."""
+    outside = [v for v in module.variables.values() if v.storage not in (spirv.INPUT, spirv.OUTPUT, spirv.PRIVATE)]
+    textures = [v for v in outside if v.storage == spirv.UNIFORM_CONSTANT and v.type.kind == "opaque"]
+    uniforms = [v for v in outside if v.storage == spirv.UNIFORM]
+    if len(textures) > _TEXTURES or len(uniforms) > 1 or len(textures) + len(uniforms) < len(outside):
+        raise NativeError(f"it reads more than uniforms and {_TEXTURES} textures, which is not counted")
+    places = {v.id: k for k, v in enumerate([*uniforms, *textures], 0 if uniforms else 1)}
+    rebound, place = words.copy(), 5
+    while place < len(words):
+        length, code = int(words[place]) >> 16, int(words[place]) & 0xFFFF
+        if code == _DECORATE and words[place + 2] == _BINDING:
+            rebound[place + 3] = places[int(words[place + 1])]
+        place += length
+    return rebound
