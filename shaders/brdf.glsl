@@ -3,37 +3,11 @@
 // Notation of the field: l points to the light, v to the viewer, n is the normal, h = (l + v)/|l + v| the half vector,
 // all unit; NoL is n.l clamped to 0...1, and so on; alpha = roughness^2. Colours are linear.
 //
-// Each term with a real trade has rungs, chosen by a macro of the pass: the first of each pair is the exercise's own.
+// Each term with a real trade has rungs, chosen by a macro of the pass: ladder.glsl lists them.
 #ifndef BRDF_GLSL
 #define BRDF_GLSL
 
-// BRDF_D, how the distribution finds the angle between n and h.
-#define D_EXERCISE 0 // from n.h: as written, loses all digits below roughness 0.1
-#define D_CROSS 1    // from |n x H|: exact to the rounding of the vectors at every roughness
-#ifndef BRDF_D
-#define BRDF_D D_CROSS
-#endif
-
-// BRDF_V, the visibility G / (4 NoL NoV).
-#define V_EXACT 0  // height-correlated Smith
-#define V_HAMMON 1 // Hammon 2017: no square roots, up to 28 % off
-#ifndef BRDF_V
-#define BRDF_V V_EXACT
-#endif
-
-// BRDF_F, how Schlick's fifth power is computed.
-#define F_POW 0      // pow(x, 5)
-#define F_MULTIPLY 1 // x^2 x^2 x: more accurate and cheaper
-#ifndef BRDF_F
-#define BRDF_F F_MULTIPLY
-#endif
-
-// BRDF_DIFFUSE, the share of the light that is left for diffuse scattering.
-#define DIFFUSE_FRESNEL 0 // 1 - F(h.l)
-#define DIFFUSE_LAMBERT 1 // all of it
-#ifndef BRDF_DIFFUSE
-#define BRDF_DIFFUSE DIFFUSE_FRESNEL
-#endif
+#include "ladder.glsl"
 
 const float PI = 3.14159265358979;
 const float DIELECTRIC_F0 = 0.04; // reflectance at normal incidence of a refractive index of 1.5

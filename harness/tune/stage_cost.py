@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .. import glsl, isa, native, programs, spirv, spirv_cost
-from ..cost_stage import VERSION
+from ..cost_stage import VERSION, raised
 from ..errors import NativeError
 from ..native import Stage
 from ..project import Pass, Project
@@ -76,6 +76,17 @@ class Costs:
         return [self._known[s.text] for s in sources]
 
 
+def code(project: Project, shader_pass: Pass) -> bytes:
+    """What tells whether macros make a difference in a pass: the code of its stages, without what is not called."""
+    found = b""
+    for stage, source in programs.sources(project, shader_pass).items():
+        try:
+            found += native.glsl_spirv_vulkan(stage, raised(source.text)).tobytes()
+        except NativeError:  # Vulkan's rules are others, and so are those of what it does not compile
+            found += native.glsl_preprocess(stage, source.text).encode()
+    return found
+
+
 def _check(source: glsl.Source) -> None:
     try:
         native.glsl_check(Stage.FRAGMENT, source.text)
@@ -85,7 +96,7 @@ def _check(source: glsl.Source) -> None:
 
 def _stages(text: str) -> tuple[np.ndarray, np.ndarray]:
     """SPIR-V of a fragment stage, and of a vertex stage that gives it values of which nothing can be told."""
-    fragment = native.glsl_spirv_vulkan(Stage.FRAGMENT, VERSION + "\n" + text.partition("\n")[2].rstrip("\n") + "\n")
+    fragment = native.glsl_spirv_vulkan(Stage.FRAGMENT, raised(text))
     module, words = spirv.read(fragment), fragment.tolist()
     locations = {o[0]: o[2] for code, o in spirv.instructions(words) if code == _DECORATE and o[1] == _LOCATION}
     inputs = [(locations[v.id], v) for v in module.variables.values() if v.storage == spirv.INPUT and v.id in locations]
