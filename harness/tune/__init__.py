@@ -128,17 +128,17 @@ class _Tuner:
     def _seen(self, picture: np.ndarray, view: int) -> Difference:
         return scene.difference(picture, self._reference[view], flip=self._budget.flip is not None)
 
-    def _beyond(self, pictures: Pictures, macros: Macros) -> Difference | None:
-        """The difference of the first view that is beyond the budget, None where all are within it. The views that have
-        been beyond it of late are looked at first."""
-        look = pictures.look(macros)
+    def _measured(self, pictures: Pictures, macros: Macros) -> tuple[Difference, bool]:
+        """The difference over all views and True where it is within the budget, else that of the first view that is
+        beyond and False. The views that have been beyond it of late are looked at first."""
+        look, seen = pictures.look(macros), []
         for view in list(self._worst_first):
-            difference = self._seen(look(view), view)
-            if not self._budget.holds(difference):
+            seen.append(self._seen(look(view), view))
+            if not self._budget.holds(seen[-1]):
                 self._worst_first.remove(view)
                 self._worst_first.insert(0, view)
-                return difference
-        return None
+                return seen[-1], False
+        return _joined(seen), True
 
     # ---- What passes know --------------------------------------------------------------------------------------------
 
@@ -231,21 +231,21 @@ class _Tuner:
             return data
         try:
             pictures = self._pictures(data)
-            beyond = self._beyond(pictures, self._preset_macros(pictures.project, self._preset))
+            _, fits = self._measured(pictures, self._preset_macros(pictures.project, self._preset))
         except HarnessError:
             return None
-        return data if beyond is None else None
+        return data if fits else None
 
     def _search(self, pictures: Pictures) -> tuple[Found, dict[Step, Difference]]:
         project = pictures.project
         rungs = self._rungs(project)
         beyond: dict[tuple, Difference] = {}
 
-        def fits(state: State) -> bool:
-            difference = self._beyond(pictures, _by_pass(state))
-            if difference is not None:
+        def off(state: State) -> float | None:
+            difference, fits = self._measured(pictures, _by_pass(state))
+            if not fits:
                 beyond[tuple(sorted(state.items()))] = difference
-            return difference is None
+            return difference.mean if fits else None
 
         by_name = {p.name: p for p in _drawn(project)}
 
@@ -253,8 +253,8 @@ class _Tuner:
             made = [with_macros(by_name[name], _by_pass(state)[name]) for name, state in asked]
             return [c.cycles for c in self._costs.of(made)]
 
-        search = Search(rungs, costs, fits)
-        found = search.cheapest(self._starts(project, rungs))
+        reference = {key: self._preset.macros[key[1]] for key in rungs}
+        found = Search(rungs, costs, off, reference).cheapest(self._starts(project, rungs))
         if found is None:  # not even the reference: what is not needed took all of the budget
             raise AssertionError("the reference is beyond the budget")
         return found, {s: beyond[tuple(sorted(s.of(found.state).items()))] for s in found.refused}

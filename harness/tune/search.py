@@ -34,6 +34,7 @@ class Found:
 
     state: State
     cost: float
+    off: float
     refused: tuple[Step, ...]
 
 
@@ -44,26 +45,28 @@ class Search:
         self,
         rungs: Mapping[tuple[str, str], Sequence[str]],
         costs: Callable[[Sequence[tuple[str, State]]], Sequence[float]],
-        fits: Callable[[State], bool],
+        off: Callable[[State], float | None],
+        reference: State,
     ):
-        """``rungs`` of each (pass, macro); ``costs`` of passes, each in a state; whether the picture of a state
-        ``fits`` the budget, which is asked once a state."""
-        self._rungs, self._costs, self._fits = rungs, costs, fits
+        """``rungs`` of each (pass, macro); ``costs`` of passes, each in a state; how far the picture of a state is
+        ``off`` that of the ``reference``, None beyond the budget, which is asked once a state."""
+        self._rungs, self._costs, self._off, self._reference = rungs, costs, off, reference
         self._passes = list(dict.fromkeys(name for name, _ in rungs))
-        self._known: dict[tuple, bool] = {}
+        self._known: dict[tuple, float | None] = {}
         #: steps that did not fit from some state: they are tried last elsewhere
         self._unlikely: set[tuple[str, str, str]] = set()
 
     def cheapest(self, starts: Iterable[State]) -> Found | None:
-        """The cheapest of the descents from those starts that fit; of equal ones the first. None where none does."""
-        ends = [self._descend(start) for start in starts if self.fits(start)]
-        return min(ends, key=lambda end: end.cost, default=None)
+        """The cheapest of the descents from those starts that fit; of equal ones the nearest to the reference. None
+        where none does."""
+        ends = [self._descend(start) for start in starts if self.off(start) is not None]
+        return min(ends, key=lambda end: (end.cost, end.off), default=None)
 
-    def fits(self, state: State) -> bool:
-        """Whether the picture of a state is within the budget."""
+    def off(self, state: State) -> float | None:
+        """How far the picture of a state is off, None beyond the budget."""
         key = tuple(sorted(state.items()))
         if key not in self._known:
-            self._known[key] = self._fits(state)
+            self._known[key] = self._off(state)
         return self._known[key]
 
     def cost(self, state: State) -> float:
@@ -71,11 +74,11 @@ class Search:
         return sum(self._costs([(name, state) for name in self._passes]))
 
     def steps(self, state: State) -> list[Step]:
-        """All cheaper rungs of a term in a pass, those that save most first."""
+        """All other rungs of a term in a pass that cost no more, those that save most first."""
         now = dict(zip(self._passes, self._costs([(name, state) for name in self._passes]), strict=True))
         others = list(self._others(state))
         costs = self._costs([(name, {**state, (name, macro): rung}) for name, macro, rung in others])
-        found = [Step(*o, saves=now[o[0]] - cost) for o, cost in zip(others, costs, strict=True) if cost < now[o[0]]]
+        found = [Step(*o, saves=now[o[0]] - cost) for o, cost in zip(others, costs, strict=True) if cost <= now[o[0]]]
         return sorted(found, key=lambda s: -s.saves)
 
     def _others(self, state: State) -> Iterator[tuple[str, str, str]]:
@@ -83,16 +86,30 @@ class Search:
             yield from ((name, macro, rung) for rung in rungs if rung != state[name, macro])
 
     def _descend(self, state: State) -> Found:
+        """Downhill, and on a level nearer to the reference, until there is neither."""
         while True:
             steps = self.steps(state)
-            likely_first = sorted(steps, key=lambda s: (s.pass_name, s.macro, s.rung) in self._unlikely)
-            taken = next((step for step in likely_first if self._try(step, state)), None)
-            if taken is None:
-                return Found(state, self.cost(state), tuple(steps))
-            state = taken.of(state)
+            down = [step for step in steps if step.saves > 0]
+            likely_first = sorted(down, key=lambda s: (s.pass_name, s.macro, s.rung) in self._unlikely)
+            following = next((s.of(state) for s in likely_first if self._fits(s, state)), None)
+            if following is None:
+                following = self._nearer(state, [step for step in steps if step.saves == 0])
+            if following is None:
+                return Found(state, self.cost(state), self.off(state), tuple(down))
+            state = following
 
-    def _try(self, step: Step, state: State) -> bool:
-        fits = self.fits(step.of(state))
+    def _fits(self, step: Step, state: State) -> bool:
+        fits = self.off(step.of(state)) is not None
         if not fits:
             self._unlikely.add((step.pass_name, step.macro, step.rung))
         return fits
+
+    def _nearer(self, state: State, level: Iterable[Step]) -> State | None:
+        """A state that costs the same and is less off, by another rung of a term that is not the reference's."""
+        for step in level:
+            place = step.pass_name, step.macro
+            if state[place] != self._reference[place]:
+                off = self.off(step.of(state))
+                if off is not None and off < self.off(state):
+                    return step.of(state)
+        return None

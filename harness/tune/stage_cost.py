@@ -39,17 +39,18 @@ class Costs:
     def __init__(self, project: Project, passes: Sequence[Pass], target: str):
         """NativeError when there is no chip ``target``. Whether it can be asked is tried on the ``passes``."""
         self._project, self._target = project, target
-        self._known: dict[str, StageCost] = {}
+        self._of_macros: dict[tuple, StageCost] = {}  # by file and macros
+        self._of_text: dict[str, StageCost] = {}
+        self.driver: str | None = None
         #: why SPIR-V operations are counted, or None when machine code is
         self.reason = isa.unavailable()
-        self.driver: str | None = None
         if self.reason is None:
             try:
                 self.of(passes)
             except NativeError as error:
                 self.reason = error.message
-        if self.reason is not None:
-            self._known.clear()
+                self._of_macros.clear()
+                self._of_text.clear()
 
     @property
     def unit(self) -> str:
@@ -59,21 +60,27 @@ class Costs:
     def of(self, passes: Sequence[Pass]) -> list[StageCost]:
         """The costs of the passes' fragment stages under the macros that they have. GlslError for what does not
         compile."""
-        sources = [programs.sources(self._project, p)[Stage.FRAGMENT] for p in passes]
-        new = {s.text: s for s in sources if s.text not in self._known}
+        keys = [(p.fragment.path, tuple((m.name, m.value) for m in p.macros)) for p in passes]
+        asked = {k: p for k, p in zip(keys, passes, strict=True) if k not in self._of_macros}
+        sources = {k: programs.sources(self._project, p)[Stage.FRAGMENT] for k, p in asked.items()}
+        new = {s.text: s for s in sources.values() if s.text not in self._of_text}
         try:
-            if self.reason is not None:
-                counted = [StageCost(spirv_cost.count_stage(native.glsl_spirv(Stage.FRAGMENT, text))) for text in new]
-            else:
-                found = isa.whole([_stages(text) for text in new], self._target) if new else []
-                self.driver = found[0].driver if found else self.driver
-                counted = [StageCost(c.inverse_throughput, c.instructions, c.vgprs) for c in found]
+            self._of_text |= dict(zip(new, self._counted(list(new)), strict=True))
         except NativeError:
             for source in new.values():  # is it the user's text?
                 _check(source)
             raise
-        self._known |= dict(zip(new, counted, strict=True))
-        return [self._known[s.text] for s in sources]
+        self._of_macros |= {k: self._of_text[source.text] for k, source in sources.items()}
+        return [self._of_macros[k] for k in keys]
+
+    def _counted(self, texts: Sequence[str]) -> list[StageCost]:
+        if self.reason is not None:
+            return [StageCost(spirv_cost.count_stage(native.glsl_spirv(Stage.FRAGMENT, text))) for text in texts]
+        if not texts:
+            return []
+        costs = isa.whole([_stages(text) for text in texts], self._target)
+        self.driver = costs[0].driver
+        return [StageCost(c.inverse_throughput, c.instructions, c.vgprs) for c in costs]
 
 
 def code(project: Project, shader_pass: Pass) -> bytes:
