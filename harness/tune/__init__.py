@@ -253,21 +253,20 @@ class _Tuner:
             made = [with_macros(by_name[name], _by_pass(state)[name]) for name, state in asked]
             return [c.cycles for c in self._costs.of(made)]
 
-        reference = {key: self._preset.macros[key[1]] for key in rungs}
-        found = Search(rungs, costs, off, reference).cheapest(self._starts(project, rungs))
+        starts = self._starts(project, rungs)
+        found = Search(rungs, costs, off, reference=starts[-1]).cheapest(starts)
         if found is None:  # not even the reference: what is not needed took all of the budget
             raise AssertionError("the reference is beyond the budget")
         return found, {s: beyond[tuple(sorted(s.of(found.state).items()))] for s in found.refused}
 
     def _starts(self, project: Project, rungs: Mapping[tuple[str, str], Sequence[str]]) -> list[State]:
-        """The project as it is, the reference, and the other presets."""
-        if self._ladder is None:
+        """The project as it is, and the reference."""
+        if self._preset is None:
             return [{}]
         written = self._written(project)
         own = {key: written[key] for key in rungs}
-        others = [p for p in self._ladder.presets if p is not self._preset]
-        starts = [own] if all(own[key] in rungs[key] for key in rungs) else []
-        return starts + [{key: p.macros[key[1]] for key in rungs} for p in (self._preset, *others)]
+        reference = {key: self._preset.macros[key[1]] for key in rungs}
+        return [own, reference] if all(own[key] in rungs[key] for key in rungs) else [reference]
 
     # ---- What it comes to --------------------------------------------------------------------------------------------
 
@@ -284,31 +283,35 @@ class _Tuner:
 
     def _choices(self, kept: Sequence[Need], state: State) -> list[Choice]:
         """What each choice saves, after those before it, and what it changes alone."""
-        found = []
-        data, own = self._data, self._pictures(self._data)
-        reference = self._preset_macros(self._project, self._preset)
+        own, reference = self._pictures(self._data), self._preset_macros(self._project, self._preset)
+        listed: list[tuple[str, str, str | None, Difference]] = []
+        chain: list[Pass] = []  # a pass before and after each choice
+        data = self._data
         for need in kept:
             before, data = data, need.apply(data)
-            saves = self._cost_in(before, need.pass_name) - self._cost_in(data, need.pass_name)
             alone = self._pictures(need.apply(self._data))
             difference = self._difference(alone, self._preset_macros(alone.project, self._preset))
-            found.append(Choice(need.pass_name, need.text, None, saves, difference))
-        for p in _drawn(self._pictures(data).project):
-            macros = dict(reference.get(p.name, {}))
-            for macro, rung in _by_pass(state).get(p.name, {}).items():
-                if macros[macro] == rung:
+            listed.append((need.pass_name, need.text, None, difference))
+            chain += [self._by_preset(text, need.pass_name) for text in (before, data)]
+        for name, chosen in _by_pass(state).items():
+            shader_pass = self._by_preset(data, name)
+            for macro, rung in chosen.items():
+                if reference[name][macro] == rung:
                     continue
-                before, macros = macros, macros | {macro: rung}
-                was, now = self._costs.of([with_macros(p, before), with_macros(p, macros)])
-                only = {**reference, p.name: reference[p.name] | {macro: rung}}
-                difference = self._difference(own, only)
-                found.append(Choice(p.name, f"{macro} = {rung}", macro, was.cycles - now.cycles, difference))
-        return found
+                only = {**reference, name: reference[name] | {macro: rung}}
+                listed.append((name, f"{macro} = {rung}", macro, self._difference(own, only)))
+                chain += [shader_pass, with_macros(shader_pass, {macro: rung})]
+                shader_pass = chain[-1]
+        costs = [cost.cycles for cost in self._costs.of(chain)]
+        return [
+            Choice(name, text, macro, before - after, difference)
+            for (name, text, macro, difference), before, after in zip(listed, costs[::2], costs[1::2], strict=True)
+        ]
 
-    def _cost_in(self, data: bytes, name: str) -> float:
-        project = sprj.read(self._path, data=data)
-        (shader_pass,) = (p for p in project.passes if p.name == name)
-        return self._costs.of([with_macros(shader_pass, self._known(shader_pass, self._preset))])[0].cycles
+    def _by_preset(self, data: bytes, name: str) -> Pass:
+        """A pass of the project in these bytes, by the reference preset."""
+        (shader_pass,) = (p for p in sprj.read(self._path, data=data).passes if p.name == name)
+        return with_macros(shader_pass, self._known(shader_pass, self._preset))
 
     # ---- Writing -----------------------------------------------------------------------------------------------------
 

@@ -75,9 +75,10 @@ class Search:
 
     def steps(self, state: State) -> list[Step]:
         """All other rungs of a term in a pass that cost no more, those that save most first."""
-        now = dict(zip(self._passes, self._costs([(name, state) for name in self._passes]), strict=True))
         others = list(self._others(state))
-        costs = self._costs([(name, {**state, (name, macro): rung}) for name, macro, rung in others])
+        asked = [(name, state) for name in self._passes]
+        costs = self._costs(asked + [(name, {**state, (name, macro): rung}) for name, macro, rung in others])
+        now, costs = dict(zip(self._passes, costs, strict=False)), costs[len(asked) :]
         found = [Step(*o, saves=now[o[0]] - cost) for o, cost in zip(others, costs, strict=True) if cost <= now[o[0]]]
         return sorted(found, key=lambda s: -s.saves)
 

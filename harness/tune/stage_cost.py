@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -107,7 +108,12 @@ def _stages(text: str) -> tuple[np.ndarray, np.ndarray]:
     module, words = spirv.read(fragment), fragment.tolist()
     locations = {o[0]: o[2] for code, o in spirv.instructions(words) if code == _DECORATE and o[1] == _LOCATION}
     inputs = [(locations[v.id], v) for v in module.variables.values() if v.storage == spirv.INPUT and v.id in locations]
-    return native.glsl_spirv_vulkan(Stage.VERTEX, _vertex(inputs)), _rebound(fragment, module)
+    return _compiled_vertex(_vertex(inputs)), _rebound(fragment, module)
+
+
+@lru_cache(maxsize=8)
+def _compiled_vertex(text: str) -> np.ndarray:
+    return native.glsl_spirv_vulkan(Stage.VERTEX, text)
 
 
 def _vertex(inputs: Sequence[tuple[int, spirv.Variable]]) -> str:
