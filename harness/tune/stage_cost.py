@@ -69,7 +69,7 @@ class Costs:
             self._of_text |= dict(zip(new, self._counted(list(new)), strict=True))
         except NativeError:
             for source in new.values():  # is it the user's text?
-                _check(source)
+                glsl.check(Stage.FRAGMENT, source)
             raise
         self._of_macros |= {k: self._of_text[source.text] for k, source in sources.items()}
         return [self._of_macros[k] for k in keys]
@@ -93,13 +93,6 @@ def code(project: Project, shader_pass: Pass) -> bytes:
         except NativeError:  # Vulkan's rules are others, and so are those of what it does not compile
             found += native.glsl_preprocess(stage, source.text).encode()
     return found
-
-
-def _check(source: glsl.Source) -> None:
-    try:
-        native.glsl_check(Stage.FRAGMENT, source.text)
-    except NativeError as error:
-        raise source.error(str(error)) from None
 
 
 def _stages(text: str) -> tuple[np.ndarray, np.ndarray]:
