@@ -16,7 +16,6 @@ from harness.check import check
 from harness.project import Macro, Project
 from harness.render import Renderer
 from harness.tune import Budget, tune
-from harness.tune.pictures import with_macros
 from harness.tune.stage_cost import Costs
 
 VIEWS = 4
@@ -150,12 +149,3 @@ def test_a_budget_by_flip(tmp_path):
     tuning = tune(path, Budget(flip=0.05), n_views=1, size=(48, 27))
     assert 0 < tuning.chosen.flip <= 0.05 and tuning.chosen.max > SCENES[tune_scenes.rough_dielectric]
     assert all(r.more_than.flip > 0.05 for r in tuning.refused)
-
-
-def test_passes_choose_for_themselves():
-    pass_ = sprj.read(tune_scenes.ROOT / "project.sprj").passes[1]
-    assert dict((m.name, m.value) for m in with_macros(pass_, {"METALNESS": "0", "X": "1"}).macros) == {
-        "METALNESS": "0",
-        "TONE_CURVE": "TONE_CLAMP",
-        "X": "1",
-    }
