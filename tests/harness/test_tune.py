@@ -11,11 +11,11 @@ import pytest
 import tune_scenes
 from tune_scenes import SIZE
 
-from harness import ladder, sprj
+from harness import HarnessError, ladder, sprj
 from harness.check import check
 from harness.project import Macro, Project
 from harness.render import Renderer
-from harness.tune import Budget, tune
+from harness.tune import Budget, edit, tune
 from harness.tune.stage_cost import Costs
 
 VIEWS = 4
@@ -149,3 +149,27 @@ def test_a_budget_by_flip(tmp_path):
     tuning = tune(path, Budget(flip=0.05), n_views=1, size=(48, 27))
     assert 0 < tuning.chosen.flip <= 0.05 and tuning.chosen.max > SCENES[tune_scenes.rough_dielectric]
     assert all(r.more_than.flip > 0.05 for r in tuning.refused)
+
+
+def test_a_file_that_changes_meanwhile_is_left_alone(tmp_path):
+    path = tune_scenes.rough_dielectric(tmp_path)
+    other = path.read_bytes().replace(b"by hand", b"by another hand")
+    with pytest.raises(HarnessError, match="has changed"):
+        tune(path, Budget(1), n_views=1, size=(16, 9), write_back=True, drawn=lambda: path.write_bytes(other))
+    assert path.read_bytes() == other
+
+
+def test_what_would_not_render_as_found_is_not_written(tmp_path, monkeypatch):
+    """An edit that goes wrong."""
+    path = tune_scenes.smooth_metal(tmp_path)
+    there, right = path.read_bytes(), edit.set_macro
+    wrong = {"METALNESS": "1", "TONE_CURVE": "TONE_REINHARD"}
+
+    def set_macro(data, pass_name, name, value):
+        name = name if name == "METALNESS" else "TONE_CURVE"
+        return right(data, pass_name, name, wrong[name])
+
+    monkeypatch.setattr(edit, "set_macro", set_macro)
+    with pytest.raises(HarnessError, match="does not render"):
+        tune(path, Budget(1), n_views=1, size=(16, 9), write_back=True)
+    assert path.read_bytes() == there

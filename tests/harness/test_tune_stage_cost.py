@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from sprj_files import write_quad, write_texture
 
-from harness import GlslError, isa, sprj
+from harness import GlslError, isa, spirv, sprj
 from harness.tune.pictures import with_macros
-from harness.tune.stage_cost import Costs, code
+from harness.tune.stage_cost import Costs, _stages, code
 
 NO_DRIVER = pytest.mark.skipif(isa.unavailable() is not None, reason=str(isa.unavailable()))
 #: a texture, a uniform, an input, and the macro MORE
@@ -51,6 +51,15 @@ def test_inputs_of_all_types(counted):
     more = "color.rgb += frame * tint * float(count) + many[2] + float(pair.y);"
     costs, (plain, with_them) = counted("", more, head=head)
     assert costs.reason is None and with_them > plain
+
+
+def test_the_uniforms_are_the_first_binding_and_textures_come_after():
+    text = "#version 330\nuniform sampler2D a, b;\nuniform vec4 tint;\nin vec2 uv;\nout vec4 color;\n"
+    for more, wanted in ((" + tint", {0: 2, 1: 0, 2: 0}), ("", {1: 0, 2: 0})):  # binding -> storage class
+        _, fragment = _stages(f"{text}void main() {{ color = texture(b, uv) + texture(a, uv){more}; }}\n")
+        module = spirv.read(fragment)
+        bindings = {o[0]: o[2] for code, o in spirv.instructions(fragment.tolist()) if code == 71 and o[1] == 33}
+        assert {place: module.variables[k].storage for k, place in bindings.items()} == wanted
 
 
 def test_by_spirv_where_there_is_no_driver(counted, monkeypatch):
