@@ -54,9 +54,14 @@ def test_inputs_of_all_types(counted):
 
 
 def test_the_uniforms_are_the_first_binding_and_textures_come_after():
-    text = "#version 330\nuniform sampler2D a, b;\nuniform vec4 tint;\nin vec2 uv;\nout vec4 color;\n"
-    for more, wanted in ((" + tint", {0: 2, 1: 0, 2: 0}), ("", {1: 0, 2: 0})):  # binding -> storage class
-        _, fragment = _stages(f"{text}void main() {{ color = texture(b, uv) + texture(a, uv){more}; }}\n")
+    head = "#version 330\nuniform sampler2D a, b;\nin vec2 uv;\nout vec4 color;\n"
+    main = "void main() { color = texture(b, uv) + texture(a, uv)"
+    buffer, textures = {0: spirv.UNIFORM}, {1: spirv.UNIFORM_CONSTANT, 2: spirv.UNIFORM_CONSTANT}
+    for text, wanted in (
+        (f"{head}{main}; }}\n", textures),
+        (f"{head}uniform vec4 tint;\n{main} + tint; }}\n", buffer | textures),
+    ):
+        _, fragment = _stages(text)
         module = spirv.read(fragment)
         bindings = {o[0]: o[2] for code, o in spirv.instructions(fragment.tolist()) if code == 71 and o[1] == 33}
         assert {place: module.variables[k].storage for k, place in bindings.items()} == wanted
