@@ -55,7 +55,7 @@ def stages(function: Function) -> Stages:
     except CallError as error:
         raise CallError(f"{error.message}; it is {signature}", *signature.origin) from None
     try:
-        fragment = native.glsl_spirv_vulkan(Stage.FRAGMENT, _raised(_source(function).text) + interface.call())
+        fragment = native.glsl_spirv_vulkan(Stage.FRAGMENT, raised(_source(function).text) + interface.call())
     except NativeError as error:
         raise _source(function).error(str(error)) from None
     if _reads_resources(fragment):
@@ -84,7 +84,7 @@ def _reads_resources(words: np.ndarray) -> bool:
     return False
 
 
-def _raised(text: str) -> str:
+def raised(text: str) -> str:
     """The text with a #version that Vulkan takes."""
     return VERSION + "\n" + text.partition("\n")[2].rstrip("\n") + "\n"
 

@@ -13,7 +13,7 @@ import re
 import subprocess
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -34,7 +34,7 @@ _INSTALL = "on Debian: make cost"
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one call of a function, beyond the null stage; ``vgprs`` alone is of the whole stage.
+    """Of one call of a function, beyond the null stage; ``vgprs`` alone is of the whole stage. Or of a whole stage.
 
     ``inverse_throughput`` is in cycles a wave of 64, every block in full. ``latency`` is the driver's own, which
     weights a block under a divergent if by 0.75: where there are ``branches`` it is flattered.
@@ -77,16 +77,36 @@ def costs(functions: Sequence[Function], target: str) -> list[Cost]:
     return [_difference(target, whole, null) for whole, null in zip(compiled, compiled, strict=True)]
 
 
-def _difference(target: str, whole: dict[str, Any], null: dict[str, Any]) -> Cost:
-    counted, free = whole["statistics"], null["statistics"]
+def whole(pairs: Sequence[tuple[np.ndarray, np.ndarray]], target: str) -> list[Cost]:
+    """The costs of whole fragment stages, nothing taken off: SPIR-V of (a vertex stage, the fragment stage) each.
+
+    They may read a uniform buffer in binding 0 of set 0, and textures in bindings 1 to 16. NativeError as ``costs``.
+    """
+    if target not in CHIPS:
+        raise NativeError(f"no target {target!r}; there are: {', '.join(CHIPS)}")
+    return [_cost(target, compiled) for compiled in _run(pairs, target)]
+
+
+def _cost(target: str, compiled: dict[str, Any]) -> Cost:
+    counted = compiled["statistics"]
     return Cost(
         target=target,
-        instructions=counted["Instructions"] - free["Instructions"],
+        instructions=counted["Instructions"],
         vgprs=counted["VGPRs"],
-        latency=counted["Latency"] - free["Latency"],
-        inverse_throughput=_inverse_throughput(target, whole) - _inverse_throughput(target, null),
-        branches=_has_branches(whole["assembly"]),
-        driver=whole["driver"],
+        latency=counted["Latency"],
+        inverse_throughput=_inverse_throughput(target, compiled),
+        branches=_has_branches(compiled["assembly"]),
+        driver=compiled["driver"],
+    )
+
+
+def _difference(target: str, whole: dict[str, Any], null: dict[str, Any]) -> Cost:
+    counted, free = _cost(target, whole), _cost(target, null)
+    return replace(
+        counted,
+        instructions=counted.instructions - free.instructions,
+        latency=counted.latency - free.latency,
+        inverse_throughput=counted.inverse_throughput - free.inverse_throughput,
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -117,6 +117,24 @@ def prepare(project: Project, traps: Traps | None = None) -> list[PreparedPass]:
         )
         for p, sources, program in linked
     ]
+
+
+def relink(project: Project, prepared: PreparedPass, shader_pass: Pass | ComputePass) -> PreparedPass:
+    """``prepared`` as ``shader_pass``, which is the same pass under other macros: linked anew, and given what it has.
+
+    GlslError where it does not compile so.
+    """
+    traps = Traps()
+    loaded, program = programs.link(project, shader_pass)
+    given = {b.object.name: b.texture for b in prepared.textures if b.texture is not None}
+    return replace(
+        prepared,
+        shader_pass=shader_pass,
+        sources=loaded,
+        program=program,
+        uniforms=PassUniforms(project, shader_pass, program, traps),
+        textures=_bind_textures(project, shader_pass, loaded, program, _Made(given, {}, {}), traps),
+    )
 
 
 def _bind_textures(

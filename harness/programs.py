@@ -32,16 +32,22 @@ def declared_samplers(fragment_text: str) -> list[str]:
     return [match[0].partition(" ")[2][:-1] for match in _SAMPLER.finditer(fragment_text)]
 
 
-def link(project: Project, shader_pass: Pass | ComputePass) -> tuple[dict[Stage, glsl.Source], native.Program]:
-    """The pass's shaders as the compilers get them, and their program. GlslError; ProjectError for missing files."""
+def sources(project: Project, shader_pass: Pass | ComputePass) -> dict[Stage, glsl.Source]:
+    """The pass's shaders as the compilers get them. GlslError; ProjectError for missing files."""
     defines = SYSTEM_MACROS | {macro.name: macro.value for macro in shader_pass.macros}
-    sources = {}
+    found = {}
     for name, (stage, written) in _STAGES.items():
         shader = getattr(shader_pass, name, None)
         if shader is not None:
-            sources[stage] = _load(project, shader_pass, shader, written, defines)
+            found[stage] = _load(project, shader_pass, shader, written, defines)
+    return found
+
+
+def link(project: Project, shader_pass: Pass | ComputePass) -> tuple[dict[Stage, glsl.Source], native.Program]:
+    """The pass's shaders as the compilers get them, and their program. GlslError; ProjectError for missing files."""
+    loaded = sources(project, shader_pass)
     try:
-        return sources, glsl.link_stages(sources)
+        return loaded, glsl.link_stages(loaded)
     except GlslError as error:
         raise GlslError(f'{error.message}\n(in pass "{shader_pass.name}")', error.file, error.line) from None
 

@@ -74,6 +74,12 @@ def count_words(words: np.ndarray) -> float:
     return sum(module.cost(called) for called in module.calls[module.entry])
 
 
+def count_stage(words: np.ndarray) -> float:
+    """The weighted operations of a whole stage, its entry point's own too."""
+    module = _Module(words)
+    return module.cost(module.entry)
+
+
 class _Module:
     """The functions of a module, each with its own operations' weight and its calls."""
 

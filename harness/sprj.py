@@ -38,14 +38,14 @@ MOST_ITEMS = 100_000
 PROPERTIES = ("Position", "Rotation", "Scale")
 
 
-def read(path: str | os.PathLike, traps: Traps | None = None) -> Project:
-    """The project in a file. ``traps`` receives the warnings.
+def read(path: str | os.PathLike, traps: Traps | None = None, data: bytes | None = None) -> Project:
+    """The project in a file, or in ``data`` as if that were in the file. ``traps`` receives the warnings.
 
     ProjectError, with file and line, for what is wrong in it or not supported; with ``traps.keep_going`` only for
     what leaves nothing to draw.
     """
     traps = Traps() if traps is None else traps
-    root = parse(path, traps)
+    root = parse(path, traps, data)
     if root.name != "project":
         raise root.error(f"<{root.name}> is not a SHADERed project: the first element must be <project>")
     version = integer(root, root.get("version", "1"), "the version")

@@ -103,14 +103,22 @@ class _Builder:
         self.open.pop()
 
 
-def parse(path: str | os.PathLike, traps: Traps | None = None) -> Element:
-    """The root element of an XML file. ProjectError with file and line when it is missing, malformed or too large."""
-    file = str(path)
+def read_bytes(path: str | os.PathLike) -> bytes:
+    """What is in an XML file. ProjectError when it is missing."""
     try:
         with open(Path(path), "rb") as opened:
-            data = opened.read(MOST_BYTES + 1)
+            return opened.read(MOST_BYTES + 1)
     except OSError as error:
-        raise ProjectError(f"cannot read the project: {error.strerror}", file) from error
+        raise ProjectError(f"cannot read the project: {error.strerror}", str(path)) from error
+
+
+def parse(path: str | os.PathLike, traps: Traps | None = None, data: bytes | None = None) -> Element:
+    """The root element of an XML file, or of ``data`` as if that were in it.
+
+    ProjectError with file and line when it is missing, malformed or too large.
+    """
+    file = str(path)
+    data = read_bytes(path) if data is None else data
     if len(data) > MOST_BYTES:
         raise ProjectError(f"a project of more than {MOST_BYTES >> 20} MiB", file)
     builder = _Builder(file, Traps() if traps is None else traps)

@@ -9,7 +9,7 @@ import numpy as np
 
 from .. import glsl, sprj_v1
 from ..errors import ProjectError
-from ..xml_lines import parse
+from ..xml_lines import Element, parse
 from . import features, models, samplers, shaders, structure, textures, uniforms
 from .findings import RULES, SEVERITIES, Finding, Rule
 from .state import State
@@ -30,11 +30,7 @@ def check(project_path: str | os.PathLike) -> list[Finding]:
     if unreadable is not None:
         fix = "correct the file, or save it again from SHADERed 1.5.6"
         return [Finding("HS001", unreadable.message, fix, glsl.shown_path(path), unreadable.line)]
-    if root.get("version", "1") == "1":
-        sprj_v1.modernize(root)
-    state = State(path, root)
-    structure.check(state)
-    shaders.check(state)
+    state = compiled(path, root)
     uniforms.check(state)
     samplers.check(state)
     textures.check(state)
@@ -42,6 +38,16 @@ def check(project_path: str | os.PathLike) -> list[Finding]:
     features.check(state)
     structure.check_reader(state)
     return sorted(state.findings, key=lambda f: (_rank(f, state), f.file, f.line or 0, f.code))
+
+
+def compiled(path: Path, root: Element) -> State:
+    """The state of the checks with the passes compiled, for all that looks at them."""
+    if root.get("version", "1") == "1":
+        sprj_v1.modernize(root)
+    state = State(path, root)
+    structure.check(state)
+    shaders.check(state)
+    return state
 
 
 def _rank(finding: Finding, state: State) -> int:

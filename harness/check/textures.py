@@ -25,7 +25,7 @@ _GL_IN_NAME = re.compile(r"(?:[Nn]ormal|NORMAL|nrm|nor)[-_ ]?(GL|gl|Gl|OpenGL|op
 _TURNS_GREEN = re.compile(
     r"\.[yg]\s*\*=\s*-\s*1|\.[yg]\s*=\s*-|\.[yg]\s*=\s*1\.0*\s*-|1\.0*\s*-\s*\w+\.[yg]\b|vec[23]\s*\(\s*1\.0*\s*,\s*-\s*1\.0*"
 )
-_TURNS_V = re.compile(r"1\.0*\s*-\s*[\w.]*\.?[yvt]\b|\.y\s*=\s*1\.0*\s*-|\.y\s*=\s*-")
+_TURNS_V = re.compile(r"1\.0*\s*-\s*(?:[\w.]*\.)?[yvt]\b|\.y\s*=\s*1\.0*\s*-|\.y\s*=\s*-")
 
 
 def pixels(path: Path) -> np.ndarray:

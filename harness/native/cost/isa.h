@@ -10,6 +10,9 @@
 #include <stdio.h>
 #include <vulkan/vulkan.h>
 
+/* How many textures a fragment shader may read. */
+enum { ISA_TEXTURES = 16 };
+
 /* A file of SPIR-V. */
 typedef struct {
     uint32_t *words;
@@ -36,7 +39,8 @@ void isa_close(isa_device *device);
 
 /* Compiles a pipeline of the two stages and prints one line of JSON about its fragment stage:
  *     {"device": .., "driver": .., "statistics": {NAME: NUMBER, ..}, "assembly": TEXT}
- * The names are the driver's. */
+ * The names are the driver's. The fragment stage may read a uniform buffer, set 0 binding 0, and textures, bindings 1
+ * to ISA_TEXTURES of that set. */
 int isa_report(const isa_device *device, const isa_spirv *vertex, const isa_spirv *fragment, FILE *out);
 
 /* Prints a text as a string of JSON. */

@@ -18,8 +18,34 @@ static VkShaderModule make_module(const isa_device *device, const isa_spirv *cod
     return module;
 }
 
-static VkPipelineLayout make_layout(const isa_device *device) {
-    VkPipelineLayoutCreateInfo info = {.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
+/* Set 0: a uniform buffer in binding 0, and textures with their samplers in those after it. */
+static VkDescriptorSetLayout make_set(const isa_device *device) {
+    VkDescriptorSetLayoutBinding bindings[1 + ISA_TEXTURES];
+    for (uint32_t k = 0; k < 1 + ISA_TEXTURES; ++k)
+        bindings[k] = (VkDescriptorSetLayoutBinding){
+            .binding = k,
+            .descriptorType =
+                k ? VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER : VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
+            .descriptorCount = 1,
+            .stageFlags = VK_SHADER_STAGE_FRAGMENT_BIT,
+        };
+    VkDescriptorSetLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+        .bindingCount = 1 + ISA_TEXTURES,
+        .pBindings = bindings,
+    };
+    VkDescriptorSetLayout set = VK_NULL_HANDLE;
+    if (vkCreateDescriptorSetLayout(device->device, &info, NULL, &set) != VK_SUCCESS)
+        isa_fail("%s: makes no layout of descriptors", device->properties.deviceName);
+    return set;
+}
+
+static VkPipelineLayout make_layout(const isa_device *device, VkDescriptorSetLayout set) {
+    VkPipelineLayoutCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+        .setLayoutCount = 1,
+        .pSetLayouts = &set,
+    };
     VkPipelineLayout layout = VK_NULL_HANDLE;
     if (vkCreatePipelineLayout(device->device, &info, NULL, &layout) != VK_SUCCESS)
         isa_fail("%s: makes no pipeline layout", device->properties.deviceName);
@@ -198,13 +224,15 @@ static int print_report(const isa_device *device, VkPipeline pipeline, FILE *out
 
 int isa_report(const isa_device *device, const isa_spirv *vertex, const isa_spirv *fragment, FILE *out) {
     VkShaderModule modules[2] = {make_module(device, vertex), make_module(device, fragment)};
-    VkPipelineLayout layout = make_layout(device);
+    VkDescriptorSetLayout set = make_set(device);
+    VkPipelineLayout layout = set ? make_layout(device, set) : VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;
     if (modules[0] && modules[1] && layout)
         pipeline = make_pipeline(device, layout, modules[0], modules[1]);
     int result = pipeline ? print_report(device, pipeline, out) : -1;
     vkDestroyPipeline(device->device, pipeline, NULL);
     vkDestroyPipelineLayout(device->device, layout, NULL);
+    vkDestroyDescriptorSetLayout(device->device, set, NULL);
     vkDestroyShaderModule(device->device, modules[0], NULL);
     vkDestroyShaderModule(device->device, modules[1], NULL);
     return result;

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 SPRJ = "project.sprj"
@@ -48,6 +50,36 @@ def test_a_metalness_that_could_be_fixed(scene):
         ],
         ("HS602", SPRJ, '"metalness"'),
     )
+
+
+METALNESS = '<variable type="float" name="metalness"><row><value>1</value></row></variable>'
+OF_ITEM = '<value variable="metalness" for="{}"><row><value>{}</value></row></value>\n'
+
+
+@pytest.mark.parametrize(("values", "fixed"), [((0, 0), True), ((0, 1), False), ((0.5, 0.5), False), ((0,), False)])
+def test_a_metalness_is_constant_when_it_is_so_for_all_items(scene, values, fixed):
+    """Two items, the second of which has the variable's own value, 1, where it has none of its own."""
+    text = scene.project.read_text()
+    (item,) = re.findall(r'        <item name="Metal1" type="model">.*?</item>\n', text, re.DOTALL)
+    own = "".join(OF_ITEM.format(name, v) for name, v in zip(("Metal1", "Copy"), values, strict=False))
+    found = [("HS602", SPRJ, 'name="metalness"')] if fixed else []
+    scene.breaks(
+        [
+            (SPRJ, item, item + item.replace('"Metal1"', '"Copy"')),
+            (SPRJ, '<define name="METALNESS" active="true">1</define>', ""),
+            (SPRJ, '<variable type="float" name="roughness">', METALNESS + '<variable type="float" name="roughness">'),
+            (SPRJ, "<itemvalues>\n", f"<itemvalues>\n{own}"),
+        ],
+        *found,
+    )
+
+
+def test_a_normal_map_that_is_tilted_everywhere_is_not_flat(scene):
+    from harness.check import check
+
+    scene.image(f"{SET}NormalGL.png", (200, 128, 220))
+    (finding,) = check(scene.project)
+    assert finding.code == "HS601" and "200/128/220 of 255 everywhere" in finding.message
 
 
 def test_a_map_that_nothing_reads(scene):
