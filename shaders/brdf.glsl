@@ -91,10 +91,12 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 // It equals shade_exercise() in exact arithmetic, step by step, a for the albedo and m for the metalness:
 //   1. With H = (l + v)/2, not normalised, n.H = (n.l + n.v)/2, and l.h = |H| = c, because l and v are unit. No division
 //      by |H|.
-//   2. |n x H|^2 + (n.H)^2 = |H|^2, because n is unit. For a small angle between n and h the cross product keeps the digits
-//      that 1 - (n.h)^2 has lost: the cosine of a small angle is all ones.
-//   3. So 1 + (n.h)^2 (alpha^2 - 1) = (|n x H|^2 + alpha^2 (n.H)^2) / |H|^2, and D = k^2/pi with
-//      k = alpha |H|^2 / (|n x H|^2 + alpha^2 (n.H)^2).
+//   2. p = H - n (n.H), the part of H across n, has |p|^2 + (n.H)^2 = |H|^2, because n is unit. For a small angle between n
+//      and h it keeps the digits that 1 - (n.h)^2 has lost: the cosine of a small angle is all ones. The roundings of n's
+//      length, of n.H and of p are as if n had been turned by less than 4e-7. D_CROSS takes n x H, which is as long, and
+//      which no error of n's length can tilt: at h = n, below roughness 0.01, it is nearer.
+//   3. So 1 + (n.h)^2 (alpha^2 - 1) = (|p|^2 + alpha^2 (n.H)^2) / |H|^2, and D = k^2/pi with
+//      k = alpha |H|^2 / (|p|^2 + alpha^2 (n.H)^2).
 //   4. With x = 1 - c and q = c - c^2/2, 1 - x^2 = 2q, and 1 - x^4 = (1 - x^2)(1 + x^2) = 4 (q - q^2) = y. With w = x^5,
 //      w = x - x y, and W = 1 - w = c + x y: nothing cancels in W as c goes to 0, nor y's rounding grow in w.
 //   5. F0 = 0.04 (1 - m) + m a, so F = F0 + (1 - F0) w = F0 W + w = A a + B with A = m W, B = w + 0.04 G, G = (1 - m) W.
@@ -108,19 +110,23 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
     float alpha2 = alpha * alpha + 1e-26; // so that k <= 5e12 and S < 1e38: nothing here leaves float's range
     float NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, v), 0.0, 1.0);
+#if BRDF_D == D_HALF // 1e38 is none
+    float lit = NoV > 0.0 ? NoL / (2.0 * PI) : 0.0;
+#else
     float behind = clamp(1.0 - 1e38 * NoV, 0.0, 1.0); // 1 where NoV is 0, the viewer behind the surface; else 0
     float lit = clamp(NoL / (2.0 * PI) - behind, 0.0, 1.0); // n.l/2pi, which is below 1; 0 for a viewer behind
+#endif
 
     vec3 H = 0.5 * (l + v);
     float NoHH = 0.5 * (NoL + NoV); // n.H where it matters: with both cosines positive
 #if BRDF_D == D_CROSS || BRDF_D == D_PROJECT
-#if BRDF_D == D_PROJECT
-    vec3 nxH = H - n * NoHH; // as long as n x H, where n is unit
+#if BRDF_D == D_CROSS
+    vec3 p = cross(n, H);
 #else
-    vec3 nxH = cross(n, H);
+    vec3 p = H - n * NoHH;
 #endif
     // |H|^2 times the squared sine and cosine of the angle between n and h. Where H is 0, 1e-37 makes 0/0 a number.
-    float sin2 = nxH.x * nxH.x + (nxH.y * nxH.y + (nxH.z * nxH.z + 1e-37));
+    float sin2 = p.x * p.x + (p.y * p.y + (p.z * p.z + 1e-37));
     float cos2 = NoHH * NoHH;
     float HH = sin2 + cos2;
     float k = alpha * HH / (sin2 + alpha2 * cos2);
@@ -140,7 +146,7 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 #if BRDF_D == D_HALF
     float S = 2.0 * (min(k * k / PI, 65504.0) * (V * lit * PI));
 #elif BRDF_V == V_KELEMEN
-    float S = 2.0 * min(k * k * (V * lit), 1e37); // at the horizons its V has no end that the peak of D could meet
+    float S = min(2.0 * (k * k * (V * lit)), 1e37); // at the horizons its V has no end that the peak of D could meet
 #else
     float S = 2.0 * (k * k * (V * lit));
 #endif

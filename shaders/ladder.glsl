@@ -5,12 +5,12 @@
 
 // BRDF_D, how the distribution finds the angle between n and h.
 #define D_EXERCISE 0  // from n.h: as written, loses all digits below roughness 0.1
-#define D_CROSS 1     // from |n x H|: exact to the rounding of the vectors at every roughness
+#define D_CROSS 1     // from |n x H|: to the rounding of the vectors at every roughness, n's length not among them
 #define D_ONE_MINUS 2 // from (1 - n.h)(1 + n.h): the algebra is sound, n.h is as coarse as in the exercise's
-#define D_PROJECT 3   // from |H - n (n.H)|: cheaper than the cross product, trusts |n| = 1
+#define D_PROJECT 3   // from |H - n (n.H)|: as cheap as any, as if n had been rounded a few times more
 #define D_HALF 4      // from |n x h|, up to 65504: for half precision
 #ifndef BRDF_D
-#define BRDF_D D_CROSS
+#define BRDF_D D_PROJECT
 #endif
 
 // BRDF_V, the visibility G / (4 NoL NoV).

@@ -31,9 +31,9 @@ def assert_equal_tables(got, want):
 
 @pytest.fixture(scope="module")
 def rungs(root):
-    """Name -> function: shade() on every rung and in every preset, what a rung is of by itself, and the exercise's own."""
+    """Name -> function: shade() on every rung and in every preset, a rung's own function, and those of the exercise."""
     steps = ladder.load(root / "shaders" / "ladder.toml")
-    brdf, color = root / "shaders" / "brdf.glsl", root / "shaders" / "color.glsl"
+    brdf = root / "shaders" / "brdf.glsl"
     found = {"shade": shader(brdf)["shade"]}
     for term in steps.terms:
         for rung in term.rungs:

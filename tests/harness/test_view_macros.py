@@ -10,7 +10,7 @@ from harness.render import Renderer
 from harness.view_macros import Changes, Ladder
 
 LADDERS = {
-    "BRDF_D": (("D_EXERCISE", "D_CROSS", "D_ONE_MINUS", "D_PROJECT", "D_HALF"), "D_CROSS"),
+    "BRDF_D": (("D_EXERCISE", "D_CROSS", "D_ONE_MINUS", "D_PROJECT", "D_HALF"), "D_PROJECT"),
     "BRDF_V": (("V_EXACT", "V_HAMMON", "V_SCHLICK", "V_KARIS", "V_SEPARABLE", "V_KELEMEN"), "V_EXACT"),
     "BRDF_F": (("F_POW", "F_MULTIPLY", "F_GAUSSIAN", "F_DIELECTRIC", "F_F82"), "F_MULTIPLY"),
     "BRDF_DIFFUSE": (

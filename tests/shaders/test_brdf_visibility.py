@@ -42,7 +42,7 @@ def test_Hammons_is_V_Hammon(library, mode, grid):
 
 #: rung -> what is left of 1/0, by the guard in the divisor
 AT_ZERO = {
-    "V_HAMMON": 0.5 / 1e-37,
+    "V_HAMMON": 0.25 / 1e-37,
     "V_SCHLICK": 0.25 / 1e-37,
     "V_SEPARABLE": 1 / 1e-26,
     "V_KELEMEN": 0.25 / 1e-37,

@@ -66,10 +66,24 @@ def test_step_1_cosines_without_a_unit_half_vector(everywhere):
 
 def test_step_2_sine_and_cosine_make_the_length(everywhere):
     for s in everywhere:
-        assert abs(s.sin2 + s.nH**2 - s.HH) < CLOSE * s.HH
+        p = tuple(a - b * s.nH for a, b in zip(s.H, s.n, strict=True))
+        assert abs(dot(p, p) + s.nH**2 - s.HH) < CLOSE * s.HH
+        assert abs(dot(p, p) - s.sin2) < CLOSE * s.HH
 
 
-def test_step_3_the_distribution_from_the_cross_product(everywhere):
+def test_step_2_a_normal_that_is_not_quite_unit_is_one_that_is_turned(everywhere):
+    """By |n|^2 - 1, which is 2 U at most and makes p longer along n; then 4 U for the roundings of n.H and p."""
+    for s in everywhere:
+        for e in (mp.mpf(2) ** -24, -(mp.mpf(2) ** -24)):
+            n = tuple((1 + e) * a for a in s.n)
+            p = tuple(a - b * dot(n, s.H) for a, b in zip(s.H, n, strict=True))
+            along = dot(p, s.n)
+            assert abs(dot(p, p) - along**2 - s.sin2) < CLOSE * s.HH
+            assert abs(along) <= 2.01 * abs(e) * s.nH
+    assert 6 * mp.mpf(2) ** -24 < 4e-7
+
+
+def test_step_3_the_distribution_from_sine_and_cosine(everywhere):
     for s in everywhere:
         k = s.alpha * s.HH / (s.sin2 + s.alpha**2 * s.nH**2)
         # 1 + (n.h)^2 (alpha^2 - 1) cancels down to alpha^2, and is squared

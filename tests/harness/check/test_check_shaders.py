@@ -22,7 +22,7 @@ COLOR = "    color = vec4("
         ("HS102", [(BACK, "#version 330\n", "#version 150\n")], BACK, "#version"),
         ("HS102", [(BACK, "#version 330\n", "#version 460\n")], BACK, "#version"),
         ("HS103", [(BACK, "smoothstep", "smoothstop")], BACK, "smoothstop"),
-        ("HS103", [("shaders/brdf.glsl", "float W = x4 * c", "float W = x44 * c")], "shaders/brdf.glsl", "x44"),
+        ("HS103", [("shaders/brdf.glsl", "float W = x * y", "float W = x * yy")], "shaders/brdf.glsl", "yy"),
         (
             "HS103",
             [(SPRJ, '"TONE_CURVE" active="true">', '"TONE_CURVE" active="true">1 + (')],
