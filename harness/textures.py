@@ -48,7 +48,7 @@ def _errors_as_texture_errors(path: Path) -> Iterator[None]:
             # Pillow warns where our own limits still hold.
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             yield
-    except TextureError:
+    except (TextureError, MemoryError):
         raise
     except Image.DecompressionBombError:
         raise TextureError(f"the image has more than {2 * Image.MAX_IMAGE_PIXELS} pixels") from None
