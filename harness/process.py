@@ -95,6 +95,14 @@ def reply(work: Callable[..., Any], *arguments: Any) -> bytes:
         return pickle.dumps((False, TypeError(f"the result cannot be sent to another process: {error}")))
 
 
+def result_of(replied: bytes) -> Any:
+    """What ``reply`` was the reply of; what that raised is raised."""
+    done, result = pickle.loads(replied)
+    if not done:
+        raise result
+    return result
+
+
 def _main(connection: Connection) -> None:
     os.set_inheritable(connection.fileno(), False)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides
