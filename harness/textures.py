@@ -1,7 +1,7 @@
 """Texture files as pixels, as SHADERed loads them: 8-bit RGBA, no colour conversion.
 
-Read with Pillow where SHADERed reads them with stb_image; Radiance pictures and DirectDraw surfaces by readers of
-their own.
+Read with Pillow where SHADERed reads them with stb_image; Radiance and Photoshop pictures and DirectDraw surfaces by
+readers of their own.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from . import dds, radiance
+from . import dds, psd, radiance
 from .errors import HarnessError
 
-#: formats that SHADERed reads and Pillow reads alike; .hdr and .dds come beside them
+#: formats that SHADERed reads and Pillow reads alike; .hdr, .psd and .dds come beside them
 FORMATS = ("PNG", "JPEG", "BMP", "TGA", "GIF", "PPM")
 #: the longest side of a texture in pixels, which is GL's limit on common hardware
 LARGEST_SIDE = 16384
@@ -53,7 +53,7 @@ def _errors_as_texture_errors(path: Path) -> Iterator[None]:
     except Image.DecompressionBombError:
         raise TextureError(f"the image has more than {2 * Image.MAX_IMAGE_PIXELS} pixels") from None
     except Image.UnidentifiedImageError:
-        kinds = ", ".join((*FORMATS, "HDR", "DDS"))
+        kinds = ", ".join((*FORMATS, "HDR", "PSD", "DDS"))
         raise TextureError(f"the file is damaged or of a kind that is not supported ({kinds} are)") from None
     except Exception as error:  # what decoders raise on a damaged file is not documented
         if isinstance(error, OSError) and error.errno:
@@ -66,7 +66,10 @@ def _other_kind(path: Path):
     if path.suffix == ".dds":
         return dds
     with open(path, "rb") as file:
-        return radiance if file.read(16).startswith(radiance.MAGICS) else None
+        head = file.read(16)
+    if head.startswith(psd.MAGIC):
+        return psd
+    return radiance if head.startswith(radiance.MAGICS) else None
 
 
 def _bytes(path: Path) -> bytes:
@@ -112,7 +115,7 @@ def read(path: str | os.PathLike, *, vflip: bool = False, volume: bool = False) 
         if reader is dds:
             slices = dds.read(_bytes(path))
             return slices if volume else np.ascontiguousarray(slices[0][::-1] if vflip else slices[0])
-        rgba = radiance.read(_bytes(path)) if reader is radiance else _read_with_pillow(path)
+        rgba = reader.read(_bytes(path)) if reader else _read_with_pillow(path)
     return np.ascontiguousarray(rgba if vflip else rgba[::-1])
 
 
