@@ -6,6 +6,7 @@ readers of their own.
 
 from __future__ import annotations
 
+import io
 import os
 import warnings
 from collections.abc import Iterator
@@ -15,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from . import dds, psd, radiance
+from . import dds, psd, radiance, stb_image
 from .errors import HarnessError
 
 #: formats that SHADERed reads and Pillow reads alike; .hdr, .psd and .dds come beside them
@@ -26,6 +27,8 @@ LARGEST_SIDE = 16384
 MOST_PIXELS = 2**28
 #: what a file of that many pixels can take
 MOST_BYTES = 8 * MOST_PIXELS
+#: Pillow looks for it at the end of a TGA, and fails where a file of a pixel or two is smaller
+_TGA_FOOTER_BYTES = 26
 
 
 class TextureError(HarnessError):
@@ -36,7 +39,10 @@ class TextureError(HarnessError):
 def _opened(path: Path) -> Iterator[Image.Image]:
     """The image with only its header read. What goes wrong here or within, at decoding, is a TextureError."""
     with _errors_as_texture_errors(path), open(path, "rb") as file:
-        yield Image.open(file, formats=FORMATS)
+        if os.path.getsize(path) < _TGA_FOOTER_BYTES:
+            yield Image.open(io.BytesIO(file.read().ljust(_TGA_FOOTER_BYTES, b"\0")), formats=FORMATS)
+        else:
+            yield Image.open(file, formats=FORMATS)
 
 
 @contextmanager
@@ -121,6 +127,10 @@ def read(path: str | os.PathLike, *, vflip: bool = False, volume: bool = False) 
 
 def _read_with_pillow(path: Path) -> np.ndarray:
     with _opened(path) as image:
+        if image.format in stb_image.FORMATS:
+            otherwise = stb_image.rgba(image, _bytes(path))
+            if otherwise is not None:
+                return otherwise
         image.load()
         if image.mode.startswith("I"):  # 16-bit gray: SHADERed keeps the upper byte
             image = Image.fromarray((np.asarray(image) >> 8).astype(np.uint8))
