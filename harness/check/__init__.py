@@ -25,13 +25,13 @@ def check(project_path: str | os.PathLike) -> list[Finding]:
     try:
         root = parse(path)
         unreadable = structure.check_root(root)
+        if unreadable is None and root.get("version", "1") == "1":
+            sprj_v1.modernize(root)
     except ProjectError as error:
         unreadable = error
     if unreadable is not None:
         fix = "correct the file, or save it again from SHADERed 1.5.6"
         return [Finding("HS001", unreadable.message, fix, glsl.shown_path(path), unreadable.line)]
-    if root.get("version", "1") == "1":
-        sprj_v1.modernize(root)
     state = State(path, root)
     structure.check(state)
     shaders.check(state)
