@@ -151,7 +151,11 @@ def _expand(project: Path, spoilt: list[Path]) -> None:
 
 
 def _check(project: Path, spoilt: list[Path]) -> None:
-    for finding in check(project):
+    try:
+        found = check(project)
+    except HarnessError as error:
+        raise WrongError(f"the check gives up, where it should find: {error}") from error
+    for finding in found:
         if not finding.message or not finding.fix or (finding.line is not None and finding.line < 1):
             raise WrongError(f"a finding lacks something: {finding}")
 

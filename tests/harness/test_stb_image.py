@@ -59,6 +59,29 @@ def test_the_bytes_of_a_ppm_are_taken_as_they_are(tmp_path, kind, channels, most
     assert (found[..., 3] == 255).all()
 
 
+def gif(background):
+    """4 x 1 pixels, of which the first two are drawn: colour 1, and colour 2, which is transparent."""
+    colors = bytes((10, 20, 30, 40, 50, 60, 70, 80, 90, 100, 110, 120))
+    screen = b"GIF89a" + struct.pack("<HHBBB", 4, 1, 0x81, background, 0) + colors
+    control = bytes((0x21, 0xF9, 4, 1, 0, 0, 2, 0))
+    # Codes of 3 bits, the lowest first: clear, 1, 2, end.
+    codes = 4 | 1 << 3 | 2 << 6 | 5 << 9
+    return (
+        screen
+        + control
+        + b","
+        + struct.pack("<HHHHB", 0, 0, 2, 1, 0)
+        + bytes((2, 2, codes & 255, codes >> 8, 0))
+        + b";"
+    )
+
+
+@pytest.mark.parametrize(("background", "color"), [(0, [0, 0, 0, 0]), (3, [100, 110, 120, 255])])
+def test_what_a_gif_leaves_free_and_what_is_transparent(tmp_path, background, color):
+    found = read(tmp_path, "t.gif", gif(background))
+    np.testing.assert_array_equal(found, [[[40, 50, 60, 255], [0, 0, 0, 0], color, color]])
+
+
 def runs():
     """A BMP of 2 x 1 pixels of 8 bits in runs."""
     body = bytes((2, 1, 0, 1))
@@ -73,10 +96,11 @@ def runs():
         ("t.pbm", b"P4 8 1\n\xaa", "binary, of 8 bits"),
         ("t.ppm", b"P6 1 1 65535\n123456", "binary, of 8 bits"),
         ("t.bmp", runs(), "in runs"),
+        ("t.bmp", bmp(PIXELS)[:14] + struct.pack("<I", 64) + bmp(PIXELS)[18:], "header has 64 bytes"),
         ("t.ppm", b"P6 2 2 255\n123456", "damaged"),
         ("t.bmp", bmp(PIXELS)[:-1], "damaged"),
     ],
-    ids=["text", "bits", "16 bits", "runs", "short ppm", "short bmp"],
+    ids=["text", "bits", "16 bits", "runs", "header", "short ppm", "short bmp"],
 )
 def test_what_shadered_does_not_read_is_refused(tmp_path, name, data, said):
     with pytest.raises(textures.TextureError, match=said):
