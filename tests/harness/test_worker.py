@@ -94,7 +94,7 @@ def test_killed_by_the_system():
 
 def test_the_child_does_not_outlive_its_parent():
     """The parent is killed while its child sleeps; the pipe that both hold is closed when both are gone."""
-    code = "r = worker.run(lambda: print('begun', flush=True) or time.sleep(1000))"
+    code = "worker.run(lambda: print('begun', flush=True) or time.sleep(5) or print('alone', flush=True))"
     with subprocess.Popen([sys.executable, "-c", PRELUDE + code], stdout=subprocess.PIPE, text=True) as parent:
         assert parent.stdout.readline() == "begun\n"
         parent.kill()
