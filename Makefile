@@ -18,7 +18,7 @@ define install_extra
 @touch $@
 endef
 
-.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation bench cost lint format \
+.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation fuzz bench cost lint format \
         build submission models textures clean
 
 help: ## show this list
@@ -37,6 +37,10 @@ test-conformance: $(VENV)/.harness $(VENV)/.test ## the pictures of SHADERed its
 test-backends: $(VENV)/.harness $(VENV)/.test ## all tests by EGL, and by GLFW on a display of their own
 	HARNESS_BACKEND=egl $(BIN)/python -m pytest
 	HARNESS_BACKEND=glfw xvfb-run -a -s '-screen 0 1280x1024x24 -noreset' $(BIN)/python -m pytest
+
+# SEED= repeats a run, CASE= one case of it; SECONDS=, CORPUS= (a folder with more projects).
+fuzz: $(VENV)/.harness ## whether spoilt projects are refused and never crash (a minute; SEED=, SECONDS=)
+	nice $(BIN)/python tests/fuzz/fuzz.py $(SEED:%=--seed %) $(SECONDS:%=--seconds %) $(CASE:%=--case %) $(CORPUS:%=--corpus %)
 
 # Each shader with the tests that know it, so that others need not be run to see that they do not use it.
 test-mutation: $(VENV)/.harness $(VENV)/.test ## whether the tests notice faults that are put into the shaders

@@ -30,7 +30,7 @@ def shader(
 
     ``isolated``: all of it is done in a process of its own, for code that may hang or crash the driver. To compile a
     function, and to evaluate a block of a batch, may each take ``time_limit`` seconds (60), and the process
-    ``memory_limit`` bytes of address space (8 GiB); a HarnessError tells when they do not suffice, and the next call
+    ``memory_limit`` bytes of memory (4 GiB); a HarnessError tells when they do not suffice, and the next call
     works again.
     """
     known_mode(mode)

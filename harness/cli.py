@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from importlib import import_module
 
 from . import commands, worker
+from .commands import _limits as limits
 from .errors import HarnessError
 
 
@@ -16,7 +17,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one command. 0: done. 1: the input is at fault, said on stderr. 2: wrong usage."""
     options = _parser().parse_args(arguments)
     try:
-        if options.time_limit is None:
+        if not options.in_worker:
             return _reported(options)
         if getattr(options, "watch", False):
             from .watch import follow
@@ -24,31 +25,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
             follow(options.project, lambda: _in_worker_reported(options))
         return _in_worker(options)
     except HarnessError as error:
-        return _report(error)
+        return _report(error, options)
     except KeyboardInterrupt:
         return 130
 
 
 def _in_worker(options: argparse.Namespace) -> int:
-    return worker.run(lambda: _reported(options), options.time_limit)
+    return worker.run(lambda: _reported(options), options.time_limit, options.memory)
 
 
 def _in_worker_reported(options: argparse.Namespace) -> int:
     try:
         return _in_worker(options)
     except HarnessError as error:  # the worker's end: out of time, crashed
-        return _report(error)
+        return _report(error, options)
 
 
 def _reported(options: argparse.Namespace) -> int:
     try:
         return options.run(options) or 0
     except HarnessError as error:
-        return _report(error)
+        return _report(error, options)
 
 
-def _report(error: HarnessError) -> int:
-    print(f"harness: {error}" if error.file is None else str(error), file=sys.stderr)
+def _report(error: HarnessError, options: argparse.Namespace) -> int:
+    text = f"harness: {error}" if error.file is None else str(error)
+    if options.in_worker and worker.SAID_OF_MEMORY.search(error.message):  # a driver's own word
+        text += f" ({worker.too_much(options.memory)})"
+    print(text, file=sys.stderr)
     return 1
 
 
@@ -69,25 +73,12 @@ def _parser() -> argparse.ArgumentParser:
             description=command.DESCRIPTION,
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        made.set_defaults(run=command.run, time_limit=None)
+        in_worker = getattr(command, "IN_WORKER", True)
+        made.set_defaults(run=command.run, in_worker=in_worker, time_limit=None)
         command.add_arguments(made)
-        seconds = getattr(command, "TIME_LIMIT", worker.SECONDS)
-        if seconds is not None:
-            made.add_argument(
-                "--time-limit",
-                type=_positive,
-                default=seconds,
-                metavar="S",
-                help="give up after S seconds (%(default)g)",
-            )
+        if in_worker:
+            limits.add_arguments(made, getattr(command, "TIME_LIMIT", worker.SECONDS))
     return parser
-
-
-def _positive(text: str) -> float:
-    value = float(text)
-    if not value > 0:
-        raise argparse.ArgumentTypeError(f"{text} is not above 0")
-    return value
 
 
 if __name__ == "__main__":

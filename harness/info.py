@@ -15,11 +15,20 @@ def info() -> dict[str, str]:
     native.open_context()
     context = native.context_info()
     mesa = re.search(r"Mesa (\S+)", context["version"])
+    known = versions()
     return {
-        "shader-harness": version("shader-harness"),
+        "shader-harness": known.pop("shader-harness"),
         "driver": context["renderer"],
         "OpenGL": context["version"].partition(" Mesa")[0],
         **({"Mesa": mesa[1]} if mesa else {}),
+        **known,
+    }
+
+
+def versions() -> dict[str, str]:
+    """What there is to be said without a GL context."""
+    return {
+        "shader-harness": version("shader-harness"),
         "glslang": native.glslang_version(),
         "CPU": _cpu(),
         "Python": platform.python_version(),

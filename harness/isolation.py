@@ -42,7 +42,7 @@ Origin = tuple[str, int] | tuple[str]
 class Worker:
     """A process for the work on one shader: started when it is needed, and again after it died.
 
-    A request may take ``seconds``, the process ``memory_bytes`` of address space. Threads may share it: they wait for
+    A request may take ``seconds``, the process ``memory_bytes`` of memory. Threads may share it: they wait for
     one another. It ends with this object.
     """
 

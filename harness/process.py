@@ -20,6 +20,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from .errors import HarnessError
+from .worker import limit_memory
 
 #: what the new process runs: it finds modules where this one does, then leaves the rest to ``_main``
 _START = """
@@ -36,7 +37,7 @@ class Process:
     """A Python process that calls ``serve(connection, *arguments)`` and ends when that returns.
 
     ``serve`` is a function of a module; ``connection`` is the other end of ours. ``files`` are descriptors that it
-    gets under the same numbers, ``memory_bytes`` limits its address space. When it is dead, ``connection`` raises
+    gets under the same numbers, ``memory_bytes`` limits its memory. When it is dead, ``connection`` raises
     EOFError or OSError.
     """
 
@@ -94,6 +95,14 @@ def reply(work: Callable[..., Any], *arguments: Any) -> bytes:
         return pickle.dumps((False, TypeError(f"the result cannot be sent to another process: {error}")))
 
 
+def result_of(replied: bytes) -> Any:
+    """What ``reply`` was the reply of; what that raised is raised."""
+    done, result = pickle.loads(replied)
+    if not done:
+        raise result
+    return result
+
+
 def _main(connection: Connection) -> None:
     os.set_inheritable(connection.fileno(), False)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides
@@ -102,7 +111,7 @@ def _main(connection: Connection) -> None:
     with contextlib.suppress(EOFError, OSError):  # the parent has gone
         serve, arguments, memory_bytes = pickle.loads(connection.recv_bytes())
         if memory_bytes is not None:
-            resource.setrlimit(resource.RLIMIT_AS, (memory_bytes, memory_bytes))
+            limit_memory(memory_bytes)
         serve(connection, *arguments)
 
 

@@ -1,11 +1,12 @@
 """Texture files as pixels, as SHADERed loads them: 8-bit RGBA, no colour conversion.
 
-Read with Pillow where SHADERed reads them with stb_image; Radiance pictures and DirectDraw surfaces by readers of
-their own.
+Read with Pillow where SHADERed reads them with stb_image; Radiance and Photoshop pictures and DirectDraw surfaces by
+readers of their own.
 """
 
 from __future__ import annotations
 
+import io
 import os
 import warnings
 from collections.abc import Iterator
@@ -15,10 +16,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from . import dds, radiance
+from . import dds, psd, radiance, stb_image
 from .errors import HarnessError
 
-#: formats that SHADERed reads and Pillow reads alike; .hdr and .dds come beside them
+#: formats that SHADERed reads and Pillow reads alike; .hdr, .psd and .dds come beside them
 FORMATS = ("PNG", "JPEG", "BMP", "TGA", "GIF", "PPM")
 #: the longest side of a texture in pixels, which is GL's limit on common hardware
 LARGEST_SIDE = 16384
@@ -26,6 +27,8 @@ LARGEST_SIDE = 16384
 MOST_PIXELS = 2**28
 #: what a file of that many pixels can take
 MOST_BYTES = 8 * MOST_PIXELS
+#: Pillow looks for it at the end of a TGA, and fails where a file of a pixel or two is smaller
+_TGA_FOOTER_BYTES = 26
 
 
 class TextureError(HarnessError):
@@ -36,7 +39,10 @@ class TextureError(HarnessError):
 def _opened(path: Path) -> Iterator[Image.Image]:
     """The image with only its header read. What goes wrong here or within, at decoding, is a TextureError."""
     with _errors_as_texture_errors(path), open(path, "rb") as file:
-        yield Image.open(file, formats=FORMATS)
+        if os.path.getsize(path) < _TGA_FOOTER_BYTES:
+            yield Image.open(io.BytesIO(file.read().ljust(_TGA_FOOTER_BYTES, b"\0")), formats=FORMATS)
+        else:
+            yield Image.open(file, formats=FORMATS)
 
 
 @contextmanager
@@ -48,12 +54,12 @@ def _errors_as_texture_errors(path: Path) -> Iterator[None]:
             # Pillow warns where our own limits still hold.
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             yield
-    except TextureError:
+    except (TextureError, MemoryError):
         raise
     except Image.DecompressionBombError:
         raise TextureError(f"the image has more than {2 * Image.MAX_IMAGE_PIXELS} pixels") from None
     except Image.UnidentifiedImageError:
-        kinds = ", ".join((*FORMATS, "HDR", "DDS"))
+        kinds = ", ".join((*FORMATS, "HDR", "PSD", "DDS"))
         raise TextureError(f"the file is damaged or of a kind that is not supported ({kinds} are)") from None
     except Exception as error:  # what decoders raise on a damaged file is not documented
         if isinstance(error, OSError) and error.errno:
@@ -66,7 +72,10 @@ def _other_kind(path: Path):
     if path.suffix == ".dds":
         return dds
     with open(path, "rb") as file:
-        return radiance if file.read(16).startswith(radiance.MAGICS) else None
+        head = file.read(16)
+    if head.startswith(psd.MAGIC):
+        return psd
+    return radiance if head.startswith(radiance.MAGICS) else None
 
 
 def _bytes(path: Path) -> bytes:
@@ -112,12 +121,16 @@ def read(path: str | os.PathLike, *, vflip: bool = False, volume: bool = False) 
         if reader is dds:
             slices = dds.read(_bytes(path))
             return slices if volume else np.ascontiguousarray(slices[0][::-1] if vflip else slices[0])
-        rgba = radiance.read(_bytes(path)) if reader is radiance else _read_with_pillow(path)
+        rgba = reader.read(_bytes(path)) if reader else _read_with_pillow(path)
     return np.ascontiguousarray(rgba if vflip else rgba[::-1])
 
 
 def _read_with_pillow(path: Path) -> np.ndarray:
     with _opened(path) as image:
+        if image.format in stb_image.FORMATS:
+            otherwise = stb_image.rgba(image, _bytes(path))
+            if otherwise is not None:
+                return otherwise
         image.load()
         if image.mode.startswith("I"):  # 16-bit gray: SHADERed keeps the upper byte
             image = Image.fromarray((np.asarray(image) >> 8).astype(np.uint8))

@@ -130,7 +130,7 @@ def parse(path: str | os.PathLike, traps: Traps | None = None, data: bytes | Non
             inner = builder.open[-1]
             what += f"; <{inner.name}> of line {inner.line} is not closed before this"
         raise ProjectError(what, file, error.lineno) from None
-    except ValueError as error:  # e.g. an encoding that Python does not know
+    except (ValueError, LookupError) as error:  # an encoding that Python does not know, or not as text
         raise ProjectError(f"malformed XML: {error}", file) from None
     assert builder.root is not None  # expat refuses a document without a root element
     return builder.root

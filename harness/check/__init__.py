@@ -25,6 +25,8 @@ def check(project_path: str | os.PathLike) -> list[Finding]:
     try:
         root = parse(path)
         unreadable = structure.check_root(root)
+        if unreadable is None and root.get("version", "1") == "1":
+            sprj_v1.modernize(root)
     except ProjectError as error:
         unreadable = error
     if unreadable is not None:
@@ -42,8 +44,6 @@ def check(project_path: str | os.PathLike) -> list[Finding]:
 
 def compiled(path: Path, root: Element) -> State:
     """The state of the checks with the passes compiled, for all that looks at them."""
-    if root.get("version", "1") == "1":
-        sprj_v1.modernize(root)
     state = State(path, root)
     structure.check(state)
     shaders.check(state)

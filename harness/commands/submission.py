@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from . import render
+from . import _limits, render
 
 SHORT = "check, test and pack a .sprj with a report, to hand in"
 DESCRIPTION = """\
@@ -18,8 +18,8 @@ byte for byte.
   harness submission
   harness submission project.sprj -o build/submission.zip --no-tests
 """
-#: the tests take minutes; the check and the picture keep limits of their own
-TIME_LIMIT = None
+#: the tests take minutes; the check and the picture are made by processes with limits
+IN_WORKER = False
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,11 +31,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--size", type=render.size, default=(1920, 1080), metavar="WxH", help="of the picture (1920x1080)"
     )
     parser.add_argument("--supersample", type=int, choices=(1, 2, 4, 8), default=2, metavar="N", help="(2)")
+    _limits.add_arguments(parser, render.TIME_LIMIT)
 
 
 def run(options: argparse.Namespace) -> None:
     """Writes the archive; at a terminal says what it is doing."""
-    from ..submission import make
+    from ..submission import Limits, make
 
     said = _say if sys.stderr.isatty() else lambda text: None
     made = make(
@@ -44,6 +45,7 @@ def run(options: argparse.Namespace) -> None:
         size=options.size,
         supersample=options.supersample,
         tests=not options.no_tests,
+        limits=Limits(options.time_limit, options.memory),
         progress=lambda text: said(f"{text} ..."),
     )
     said(f"{made.path}: {len(made.names)} files, {made.size / 1e6:.1f} MB")

@@ -77,6 +77,11 @@ _PROTOTYPES = {
     "hn_context_close": (None, []),
     "hn_context_info": (_TEXT, []),
     "hn_context_take_error": (_INT, []),
+    "hn_context_integers": (_INT, [_UINT, _INT, ctypes.POINTER(ctypes.c_int32)]),
+    "hn_context_precision": (
+        _INT,
+        [_UINT, _UINT, ctypes.POINTER(ctypes.c_int32), ctypes.POINTER(ctypes.c_int32)],
+    ),
     "hn_glsl_check": (_INT, [_INT, _TEXT, _INT]),
     "hn_glsl_preprocess": (_POINTER, [_INT, _TEXT]),
     "hn_glsl_tree": (_POINTER, [_INT, _TEXT]),
@@ -172,6 +177,23 @@ def context_info() -> dict[str, str]:
     if text is None:
         raise _error()
     return dict(zip(("renderer", "version", "glsl", "backend"), text.decode().split("\n"), strict=True))
+
+
+def context_integers(name: int, count: int = 1) -> tuple[int, ...]:
+    """GL's limit of that name, such as GL_MAX_TEXTURE_SIZE: ``count`` numbers. NativeError where GL knows it not."""
+    values = (ctypes.c_int32 * count)()
+    _done(_library.hn_context_integers(name, count, values))
+    return tuple(values)
+
+
+def context_precision(stage: int, precision: int) -> tuple[int, int, int]:
+    """Binary logarithms of the smallest and largest magnitude, and bits, of GL_HIGH_FLOAT and the like in a stage.
+
+    NativeError where the driver does not say.
+    """
+    exponents, bits = (ctypes.c_int32 * 2)(), ctypes.c_int32()
+    _done(_library.hn_context_precision(stage, precision, exponents, ctypes.byref(bits)))
+    return exponents[0], exponents[1], bits.value
 
 
 def take_error() -> str | None:

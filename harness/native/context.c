@@ -84,6 +84,29 @@ const char *hn_context_info(void) {
     return hn_context_check("hn_context_info") ? NULL : info;
 }
 
+int hn_context_integers(uint32_t name, int count, int32_t *values) {
+    if (hn_context_check("hn_context_integers"))
+        return -1;
+    GLint found[4] = {0};
+    if (count < 1 || count > 4)
+        return hn_fail("hn_context_integers: %d numbers, not 1 to 4", count);
+    gl.GetIntegerv(name, found);
+    if (hn_check_gl("hn_context_integers: 0x%04x", name))
+        return -1;
+    for (int k = 0; k < count; ++k)
+        values[k] = found[k];
+    return 0;
+}
+
+int hn_context_precision(uint32_t stage, uint32_t type, int32_t range[2], int32_t *bits) {
+    if (hn_context_check("hn_context_precision"))
+        return -1;
+    if (!gl.GetShaderPrecisionFormat)
+        return hn_fail("hn_context_precision: the driver does not say it");
+    gl.GetShaderPrecisionFormat(stage, type, range, bits);
+    return hn_check_gl("hn_context_precision: 0x%04x of 0x%04x", type, stage);
+}
+
 int hn_context_take_error(void) {
     return is_open && chosen->is_current() ? hn_check_gl("GL") : 0;
 }

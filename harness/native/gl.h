@@ -117,11 +117,12 @@
     X(PFNGLVIEWPORTPROC, Viewport)
 
 /* In GL 4.3, some of them earlier: NULL in a context of less. */
-#define HN_GL_43(X)                                \
-    X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)     \
-    X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture) \
-    X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)   \
-    X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)       \
+#define HN_GL_43(X)                                                \
+    X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                     \
+    X(PFNGLBINDIMAGETEXTUREPROC, BindImageTexture)                 \
+    X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                   \
+    X(PFNGLGETSHADERPRECISIONFORMATPROC, GetShaderPrecisionFormat) \
+    X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                       \
     X(PFNGLPATCHPARAMETERIPROC, PatchParameteri)
 
 #define HN_GL_MEMBER(type, name) type name;

@@ -46,6 +46,11 @@ int hn_context_open(void);
 void hn_context_close(void);
 /* "renderer\nversion\nGLSL version\nbackend" of the open context. */
 const char *hn_context_info(void);
+/* GL's limit or other number `name` (GL_MAX_TEXTURE_SIZE, ...), of which there are `count`, at most 4. */
+int hn_context_integers(uint32_t name, int count, int32_t *values);
+/* The range of GLSL ES's precision `type` (GL_HIGH_FLOAT, ...) in a stage (GL_FRAGMENT_SHADER, ...), as binary
+ * logarithms of the smallest and largest magnitude, and how many bits it has. Fails below GL 4.3. */
+int hn_context_precision(uint32_t stage, uint32_t type, int32_t range[2], int32_t *bits);
 /* Returns -1 and names them in hn_error() where GL has errors that no operation has reported yet, as the deletion of
  * what is not there leaves them; they are forgotten. 0 when there is none, or no context in this thread. */
 int hn_context_take_error(void);

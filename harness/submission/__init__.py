@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from PIL import Image
@@ -20,10 +20,21 @@ from ..errors import HarnessError
 from ..glsl import shown_path
 from ..picture import write
 from ..project import Project
+from ..worker import MEMORY_BYTES, SECONDS
 from . import archive, contents, evidence, exercise, report
 
 REPORT = "report.html"
 SIZE, SUPERSAMPLE = (1920, 1080), 2
+
+
+class Limits(NamedTuple):
+    """What checking or drawing the project may take: seconds, and bytes of memory."""
+
+    seconds: float = SECONDS
+    memory_bytes: int = MEMORY_BYTES
+
+
+LIMITS = Limits()
 
 
 @dataclass(frozen=True)
@@ -42,6 +53,7 @@ def make(
     size: tuple[int, int] = SIZE,
     supersample: int = SUPERSAMPLE,
     tests: bool = True,
+    limits: Limits = LIMITS,
     progress: Callable[[str], None] = lambda said: None,
 ) -> Submission:
     """Writes the archive of a project, whole or not at all. ``progress`` is told each step.
@@ -52,20 +64,20 @@ def make(
     path, output = Path(project), Path(output)
     parts = exercise.read(path)
     progress(f"checking {path}")
-    findings = _check(path.parent, path.name)
+    findings = _check(path.parent, path.name, limits)
     files = contents.files(path)
     if REPORT in files:
         raise HarnessError(f"the project has a file {REPORT} of its own, where the report goes", path)
     read = sprj.read(path)
     quoted = _quoted(path, read, parts)
     progress(f"rendering {size[0]} x {size[1]}")
-    picture = _render(path.parent, path.name, size, supersample)
+    picture = _render(path.parent, path.name, size, supersample, limits)
     found = _evidence(path, read, parts, quoted, tests, progress)
     progress("writing the report")
     files[REPORT] = report.write(path, parts, found, picture, findings, sorted(files)).encode()
     packed = archive.pack(files)
     progress("unpacking it elsewhere, checking and rendering it again")
-    _verify(packed, path.name, files, findings, picture, size, supersample)
+    _verify(packed, path.name, files, findings, picture, size, supersample, limits)
     try:
         output.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -101,9 +113,9 @@ def _evidence(
     return report.Evidence(quoted, regions, results, costs)
 
 
-def _check(folder: Path, name: str) -> list[dict[str, Any]]:
+def _check(folder: Path, name: str, limits: Limits) -> list[dict[str, Any]]:
     """The findings of ``harness check`` as its JSON has them, none of them errors."""
-    done = _harness(folder, "check", name, "--format", "json")
+    done = _harness(folder, limits, "check", name, "--format", "json")
     try:
         findings = json.loads(done.stdout)["findings"]
     except ValueError:
@@ -115,20 +127,21 @@ def _check(folder: Path, name: str) -> list[dict[str, Any]]:
     return findings
 
 
-def _render(folder: Path, name: str, size: tuple[int, int], supersample: int) -> np.ndarray:
+def _render(folder: Path, name: str, size: tuple[int, int], supersample: int, limits: Limits) -> np.ndarray:
     """The picture, (h, w, 4) uint8, by a process of its own in the project's folder."""
     with tempfile.TemporaryDirectory() as temporary:
         picture = Path(temporary) / "picture.png"
         how = ["--size", f"{size[0]}x{size[1]}", "--supersample", str(supersample)]
-        done = _harness(folder, "render", name, "-o", str(picture), *how)
+        done = _harness(folder, limits, "render", name, "-o", str(picture), *how)
         if done.returncode:
             raise HarnessError(f"the project cannot be rendered: {done.stderr.strip()}")
         return np.asarray(Image.open(picture).convert("RGBA"))
 
 
-def _harness(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+def _harness(folder: Path, limits: Limits, *arguments: str) -> subprocess.CompletedProcess[str]:
     """A command in a process and a folder of its own: nothing of this one helps it to find files."""
     command: Sequence[str] = (sys.executable, "-P", "-m", "harness.cli", *arguments)
+    command = (*command, "--time-limit", str(limits.seconds), "--memory", str(limits.memory_bytes))
     return subprocess.run(command, cwd=folder, capture_output=True, text=True)
 
 
@@ -140,6 +153,7 @@ def _verify(
     picture: np.ndarray,
     size: tuple[int, int],
     supersample: int,
+    limits: Limits,
 ) -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
@@ -147,8 +161,8 @@ def _verify(
         there = {p.relative_to(folder).as_posix(): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
         if there != files:
             raise HarnessError(f"unpacked, the archive does not have the files of {shown_path(name)}")
-        if _check(folder, name) != findings:
+        if _check(folder, name, limits) != findings:
             raise HarnessError("unpacked, the check finds something else: the project depends on what is not packed")
-        again = _render(folder, name, size, supersample)
+        again = _render(folder, name, size, supersample, limits)
         if not np.array_equal(again, picture):
             raise HarnessError("unpacked, the picture is another: the project depends on what is not packed")

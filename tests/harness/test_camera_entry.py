@@ -71,6 +71,46 @@ def test_version_1_has_names_of_its_own(tmp_path):
     assert path.read_bytes() == text.format(entry.replace(">2<", ">20<")).encode()
 
 
+ENTRY = '<entry type="camera" fp="false"><distance>3</distance><pitch>1.5</pitch><yaw>20</yaw><roll>0</roll></entry>'
+
+
+@pytest.mark.parametrize(
+    ("settings", "written"),
+    [
+        ("\n  <settings>\n    <entry/>\n  </settings>\n", "\n  <settings>\n    {}\n    <entry/>\n  </settings>\n"),
+        ("\r\n\t<settings a='>' />\r\n", "\r\n\t<settings a='>'>\r\n\t\t{}\r\n\t</settings>\r\n"),
+        ("\n  <settings></settings>\n", "\n  <settings>\n    {}</settings>\n"),
+        ("\n", "\n  <settings>\n    {}\n  </settings>\n"),
+        ("<pipeline/><settings><!-- x --></settings>", "<pipeline/><settings>\n  {}<!-- x --></settings>"),
+    ],
+)
+def test_a_file_without_a_camera_gets_one_and_keeps_the_rest(tmp_path, settings, written):
+    path = tmp_path / "p.sprj"
+    path.write_bytes(f'<project version="2">{settings}</project>\n'.encode())
+    camera = ArcballCamera(distance=3.0, pitch=1.5, yaw=20.0, roll=0.0)
+    write_camera(path, camera)
+    assert path.read_bytes().decode() == f'<project version="2">{written.format(ENTRY)}</project>\n'
+    there = sprj.read(path).settings.camera
+    assert (there.distance, there.pitch, there.yaw, there.roll) == (3.0, 1.5, 20.0, 0.0)
+
+
+def test_a_first_person_camera_is_added_too(tmp_path):
+    path = tmp_path / "p.sprj"
+    path.write_text('<project version="2"><settings/></project>')
+    write_camera(path, FirstPersonCamera((1.0, -2.5, 3.0), pitch=5.0, yaw=-4.0, line=1))
+    there = sprj.read(path).settings.camera
+    assert (there.position, there.pitch, there.yaw) == ((1.0, -2.5, 3.0), 5.0, -4.0)
+
+
+def test_a_file_in_utf_16_is_left_alone(tmp_path):
+    path = tmp_path / "p.sprj"
+    text = f'<?xml version="1.0" encoding="utf-16"?><project version="2"><settings>{ENTRY}</settings></project>'
+    path.write_bytes(before := text.encode("utf-16"))
+    with pytest.raises(ProjectError, match="UTF-16: save it as UTF-8"):
+        write_camera(path, ArcballCamera(5.0, 1.0, 2.0, 3.0))
+    assert path.read_bytes() == before
+
+
 def test_a_file_that_is_the_same_is_not_touched(tmp_path):
     path = write(tmp_path)
     before = path.stat()
@@ -87,14 +127,6 @@ def test_links_and_modes_stay(tmp_path):
     assert link.is_symlink() and b"> 20 <" in path.read_bytes()
     assert path.stat().st_mode & 0o777 == 0o600
     assert sorted(p.name for p in tmp_path.iterdir()) == ["link.sprj", "p.sprj"]
-
-
-def test_without_an_entry_nothing_is_written(tmp_path):
-    path = write(tmp_path, "")
-    before = path.read_bytes()
-    with pytest.raises(ProjectError, match='no <entry type="camera">'):
-        write_camera(path, ArcballCamera(20.0, 16.0, 180.0, 0.0))
-    assert path.read_bytes() == before
 
 
 def test_the_kind_of_the_camera_does_not_change(tmp_path):

@@ -49,9 +49,63 @@ def test_a_crash_is_an_error(signal):
 
 def test_memory_is_limited():
     done = run("sys.exit(worker.run(lambda: len(bytearray(1 << 32)), memory_bytes=1 << 31))")
+    assert (done.returncode, done.stderr) == (1, "harness: needs more than 2G of memory; --memory allows more\n")
+
+
+def test_memory_that_others_see_is_limited():
+    """No limit of the system's counts it: it is looked at, and the child ended."""
+    work = (
+        "m = mmap.mmap(-1, 1 << 29)\ndef fill():\n    for k in range(0, 1 << 29, 4096): m[k] = 1\n    time.sleep(100)\n"
+    )
+    done = run(f"import mmap\n{work}try: worker.run(fill, memory_bytes=1 << 28)\nexcept HarnessError as e: print(e)")
+    assert done.stdout == "needs more than 256M of memory; --memory allows more\n"
+
+
+def test_processes_of_the_work_have_its_limit():
+    start = "[sys.executable, '-c', 'bytearray(1 << 31)']"
+    done = run(f"import subprocess; sys.exit(worker.run(lambda: subprocess.call({start}), memory_bytes=1 << 30))")
     assert done.returncode == 1
-    assert "memory" in done.stderr
-    assert "Traceback" not in done.stderr
+    assert "MemoryError" in done.stderr
+
+
+def test_a_crash_for_want_of_memory_says_so():
+    """As a C++ library ends: it has most of what it may, gets no more, and aborts."""
+    work = "def work():\n    x = bytearray(3 << 28); time.sleep(0.2); os.kill(os.getpid(), signal.SIGABRT)\n"
+    done = run(f"{work}try: worker.run(work, memory_bytes=1 << 30)\nexcept HarnessError as e: print(e)")
+    assert done.stdout == "needs more than 1G of memory; --memory allows more (SIGABRT)\n"
+
+
+def test_the_last_words_of_a_library_are_part_of_the_error():
+    work = "def work(): os.write(2, b'one\\nassertion failed: x\\n'); os.kill(os.getpid(), signal.SIGSEGV)\n"
+    done = run(f"{work}try: worker.run(work)\nexcept HarnessError as e: print(e)")
+    assert done.stdout.endswith(": assertion failed: x\n")
+    assert done.stderr == ""
+
+
+def test_what_a_library_prints_is_shown_at_the_end():
+    done = run("sys.exit(worker.run(lambda: os.write(2, b'a warning\\n') and print('first', file=sys.stderr) or 0))")
+    assert (done.returncode, done.stderr) == (0, "first\na warning\n")
+
+
+def test_killed_by_the_system():
+    done = run("try: worker.run(lambda: os.kill(os.getpid(), signal.SIGKILL))\nexcept HarnessError as e: print(e)")
+    assert "was killed (SIGKILL), as the system does when it is short of memory" in done.stdout
+
+
+def test_the_child_does_not_outlive_its_parent():
+    """The parent is killed while its child sleeps; the pipe that both hold is closed when both are gone."""
+    code = "worker.run(lambda: print('begun', flush=True) or time.sleep(5) or print('alone', flush=True))"
+    with subprocess.Popen([sys.executable, "-c", PRELUDE + code], stdout=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout.readline() == "begun\n"
+        parent.kill()
+        assert parent.stdout.read() == ""
+
+
+def test_a_file_that_is_being_written_leaves_nothing_when_the_writer_is_killed(tmp_path):
+    save = "lambda file: (file.write(b'half'), file.flush(), os.kill(os.getpid(), signal.SIGKILL))"
+    done = run(f"from harness.picture import write\nworker.run(lambda: write({str(tmp_path / 'out.png')!r}, {save}))")
+    assert "SIGKILL" in done.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_work_changes_nothing_in_the_caller():

@@ -73,3 +73,10 @@ def test_a_file_too_large(tmp_path, monkeypatch):
     path = tmp_path / "project.sprj"
     path.write_text("<project>" + " " * (1 << 20))
     assert "more than 1 MiB" in refusal(path).message
+
+
+@pytest.mark.parametrize("encoding", ["no-such-thing", "hex", "utf-7", "undefined"])
+def test_an_encoding_that_is_none_is_refused(tmp_path, encoding):
+    path = tmp_path / "p.sprj"
+    path.write_text(f'<?xml version="1.0" encoding="{encoding}"?><project version="2"/>')
+    assert "malformed XML" in refusal(path).message

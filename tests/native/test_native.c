@@ -67,6 +67,9 @@ static void test_no_context(void) {
     CHECK(hn_context_choose("glfw") == 0); /* nothing is open: the last choice holds */
     CHECK(hn_context_choose(backend) == 0);
     CHECK_FAILS(hn_context_info() == NULL, reason);
+    int32_t numbers[2];
+    CHECK_FAILS(hn_context_integers(GL_MAX_TEXTURE_SIZE, 1, numbers) == -1, reason);
+    CHECK_FAILS(hn_context_precision(GL_FRAGMENT_SHADER, GL_HIGH_FLOAT, numbers, numbers) == -1, reason);
     CHECK_FAILS(hn_program_create("", "") == 0, reason);
     CHECK_FAILS(hn_program_uniforms(1, &variable, 1) == -1, reason);
     CHECK_FAILS(hn_program_attributes(1, &variable, 1) == -1, reason);
@@ -119,6 +122,19 @@ static void test_take_error(void) {
     enable(GL_TRIANGLES);
     CHECK_FAILS(hn_context_take_error() == -1, "GL: GL_INVALID_ENUM");
     CHECK(hn_context_take_error() == 0);
+}
+
+static void test_numbers(void) {
+    int32_t numbers[4] = {0}, range[2] = {0}, bits = 0;
+    CHECK(hn_context_integers(GL_MAX_VIEWPORT_DIMS, 2, numbers) == 0);
+    CHECK(numbers[0] >= 1024 && numbers[1] >= 1024);
+    CHECK_FAILS(hn_context_integers(GL_TRIANGLES, 1, numbers) == -1, "0x0004: GL_INVALID_ENUM");
+    CHECK_FAILS(hn_context_integers(GL_MAX_TEXTURE_SIZE, 5, numbers) == -1, "5 numbers");
+    if (hn_context_precision(GL_FRAGMENT_SHADER, GL_HIGH_FLOAT, range, &bits) == 0) {
+        CHECK(range[1] == 127 && bits == 23);
+    } else {
+        CHECK(strstr(hn_error(), "does not say"));
+    }
 }
 
 static void test_open_and_close(void) {
@@ -177,6 +193,7 @@ void test_context(void) {
     test_no_context();
     test_open_and_close();
     test_take_error();
+    test_numbers();
     test_other_thread();
 }
 

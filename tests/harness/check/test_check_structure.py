@@ -27,6 +27,7 @@ def test_the_copy_has_no_findings(scene):
     [
         ("HS001", [(SPRJ, "</pipeline>", "</pipelin>")], "</pipelin>"),
         ("HS001", [(SPRJ, 'version="2"', 'version="3"')], "<project"),
+        ("HS001", [(SPRJ, 'version="2"', 'version="1"')], "<rendertexture />"),  # named "Window" in version 1
         ("HS001", [(SPRJ, '<?xml version="1.0"?>\n', '<!DOCTYPE project [<!ENTITY a "b">]>\n')], "<!DOCTYPE"),
         ("HS002", [(SPRJ, 'name="Painted teapot"', 'name="SCREEN"')], 'name="SCREEN"'),
         ("HS002", [(SPRJ, 'name="Painted teapot"', 'name="metals"')], 'name="metals"'),
