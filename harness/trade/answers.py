@@ -1,0 +1,166 @@
+"""Which preset to take for a phone, for a desktop and for ground truth, and what one gives up: computed, by stated rules."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from . import pareto, text
+from .pareto import HALF, SINGLE
+
+#: the mean ꟻLIP error under which a picture passes for the reference
+UNSEEN = 0.01
+#: what a white furnace may return beyond what it gets, and still make no light: fits and quadratures are not better
+FURNACE = 0.01
+
+Entry = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The preset ``name`` for a ``use``, ``why`` it, and what one ``gives_up`` with it, a phrase each.
+
+    ``name`` is None where the figures that the rule needs were not measured; ``why`` then says so.
+    """
+
+    use: str
+    name: str | None
+    why: str
+    gives_up: tuple[str, ...]
+
+
+def answers(data: Mapping[str, Any]) -> list[Answer]:
+    """For a phone, a desktop and ground truth, in this order."""
+    return [_phone(data), _desktop(data), _truth(data)]
+
+
+def broken(entry: Entry, modes: Sequence[str]) -> int | None:
+    """At how many of the extreme inputs the value is not finite, or negative, in the worst of the modes; None where that
+    was not measured."""
+    measured = entry["extremes"] or {}
+    counts = [measured.get(mode) for mode in modes]
+    if any(found is None for found in counts):
+        return None
+    return max(found["non_finite"] + found["negative"] for found in counts)
+
+
+def _phone(data: Mapping[str, Any]) -> Answer:
+    presets = [p for p in data["presets"] if broken(p, HALF) is not None and (p["cost"] or {}).get("spirv") is not None]
+    if not presets:
+        return Answer("a phone", None, "no preset has both its extremes in half precision and its cost", ())
+    kept, rule = _soundest(presets, HALF, "half precision, which phones compute in")
+    chosen = min(kept, key=lambda p: p["cost"]["spirv"])
+    weight = f"{text.plain(chosen['cost']['spirv'])} weighted SPIR-V operations (no chip of a phone is among the targets)"
+    return Answer("a phone", chosen["name"], f"the cheapest {rule}: {weight}", _gives_up(data, chosen))
+
+
+def _desktop(data: Mapping[str, Any]) -> Answer:
+    presets = [p for p in data["presets"] if broken(p, SINGLE) is not None and _total(data, p) is not None]
+    if not presets:
+        return Answer("a desktop", None, "no preset has both its extremes in single precision and its cycles", ())
+    kept, rule = _soundest(presets, SINGLE, "single precision")
+    alike = [p for p in kept if _alike(data, p)]
+    if not alike:
+        return Answer("a desktop", None, f"the picture of none {rule} is known to pass for that of {data['reference']}", ())
+    chosen = min(alike, key=lambda p: _total(data, p))
+    why = f"the cheapest {rule}, with a picture that passes for that of {data['reference']} (ꟻLIP up to {UNSEEN})"
+    return Answer("a desktop", chosen["name"], f"{why}: {_cycles(data, chosen)}", _gives_up(data, chosen))
+
+
+def _truth(data: Mapping[str, Any]) -> Answer:
+    presets = [p for p in data["presets"] if broken(p, SINGLE) is not None and p["energy"] and p["roundoff"]]
+    if not presets:
+        return Answer("ground truth", None, "no preset has both its extremes in single precision and its energy", ())
+    kept, rule = _soundest(presets, SINGLE, "single precision")
+    excess = {p["name"]: max(p["energy"]["furnace_max"] - 1 - FURNACE, 0) for p in kept}
+    chosen = min(kept, key=lambda p: (excess[p["name"]], max(p["roundoff"][mode]["p99"] for mode in SINGLE)))
+    returned = text.plain(chosen["energy"]["furnace_max"], 4)
+    law = "that makes no light" if excess[chosen["name"]] == 0 else "that makes the least light"
+    why = f"the most accurate {rule}, and {law}: a white furnace gets back at most {returned} of what it gave"
+    return Answer("ground truth", chosen["name"], why, _gives_up(data, chosen))
+
+
+def _soundest(presets: Sequence[Entry], modes: Sequence[str], where: str) -> tuple[list[Entry], str]:
+    """Those that break at the fewest of the extreme inputs, and that said in words."""
+    fewest = min(broken(p, modes) for p in presets)
+    kept = [p for p in presets if broken(p, modes) == fewest]
+    inputs = text.count(kept[0]["extremes"]["inputs"])
+    if fewest == 0:
+        return kept, f"that is finite and not negative at all {inputs} extreme inputs in {where}"
+    return kept, f"of those that break at the fewest extreme inputs ({text.count(fewest)} of {inputs}) in {where}"
+
+
+def _alike(data: Mapping[str, Any], preset: Entry) -> bool:
+    if preset["name"] == data["reference"]:
+        return True
+    scene = preset["scene"]
+    if not scene:
+        return False
+    return scene["max"] <= 1 if scene["flip"] is None else scene["flip"] <= UNSEEN
+
+
+def _total(data: Mapping[str, Any], preset: Entry) -> float | None:
+    """Cycles on all targets together, or weighted operations where no driver told cycles."""
+    found = [pareto.cycles(preset, target) for target in data["targets"]]
+    return (preset["cost"] or {}).get("spirv") if not found or None in found else sum(found)
+
+
+def _cycles(data: Mapping[str, Any], preset: Entry) -> str:
+    found = [(target, pareto.cycles(preset, target)) for target in data["targets"]]
+    if not found or any(cycles is None for _, cycles in found):
+        return f"{text.plain(preset['cost']['spirv'])} weighted SPIR-V operations"
+    return f"{', '.join(f'{cycles:g} on {target}' for target, cycles in found)} cycles"
+
+
+def _gives_up(data: Mapping[str, Any], preset: Entry) -> tuple[str, ...]:
+    """What is worse than it could be: beside the cheapest of the presets, and beside the reference."""
+    said = [_speed(data, preset), *_likeness(data, preset), *_breaks(preset), _light(preset)]
+    return tuple(phrase for phrase in said if phrase)
+
+
+def _speed(data: Mapping[str, Any], preset: Entry) -> str | None:
+    known = [p for p in data["presets"] if _total(data, p) is not None]
+    if preset not in known:
+        return None
+    cheapest = min(known, key=lambda p: _total(data, p))
+    more = _total(data, preset) / _total(data, cheapest) - 1
+    if more <= 0:
+        return None
+    return f"{text.percent(more)} more cycles than {cheapest['name']}" + _slower(preset, cheapest)
+
+
+def _slower(preset: Entry, cheapest: Entry) -> str:
+    """The same by the clock, on each device that timed both."""
+    clocks = {(t["backend"], t["device"]): t["ns"] for t in cheapest["time"] or ()}
+    both = [(t["device"], t["ns"], clocks.get((t["backend"], t["device"]))) for t in preset["time"] or ()]
+    told = [f"{text.plain(ns)} ns for {text.plain(least)} on {device}" for device, ns, least in both if least]
+    return f" ({'; '.join(told)})" if told else ""
+
+
+def _likeness(data: Mapping[str, Any], preset: Entry) -> list[str]:
+    reference = data["reference"]
+    if preset["name"] == reference:
+        return []
+    said = []
+    if preset["model"] and preset["model"]["p99"]:
+        said.append(f"values that differ from those of {reference} by {text.number(preset['model']['p99'])} (99th percentile)")
+    scene = preset["scene"]
+    if scene and scene["max"]:
+        seen = "" if scene["flip"] is None else f"ꟻLIP {text.number(scene['flip'])}, "
+        most = f"up to {scene['max']:g}/255 of the scene's picture"
+        said.append(f"{most} ({seen}{text.percent(scene['changed'])} of the pixels change)")
+    return said
+
+
+def _breaks(preset: Entry) -> list[str]:
+    inputs = (preset["extremes"] or {}).get("inputs")
+    counts = [(name, broken(preset, modes)) for name, modes in (("single", SINGLE), ("half", HALF))]
+    return [f"{text.count(n)} of {text.count(inputs)} extreme inputs break in {name} precision" for name, n in counts if n]
+
+
+def _light(preset: Entry) -> str | None:
+    energy = preset["energy"]
+    if not energy or energy["furnace_max"] <= 1 + FURNACE:
+        return None
+    return f"energy: a white furnace gets back up to {text.plain(energy['furnace_max'])} times what it gave"
