@@ -51,7 +51,9 @@ def _phone(data: Mapping[str, Any]) -> Answer:
         return Answer("a phone", None, "no preset has both its extremes in half precision and its cost", ())
     kept, rule = _soundest(presets, HALF, "half precision, which phones compute in")
     chosen = min(kept, key=lambda p: p["cost"]["spirv"])
-    weight = f"{text.plain(chosen['cost']['spirv'])} weighted SPIR-V operations (no chip of a phone is among the targets)"
+    weight = (
+        f"{text.plain(chosen['cost']['spirv'])} weighted SPIR-V operations (no chip of a phone is among the targets)"
+    )
     return Answer("a phone", chosen["name"], f"the cheapest {rule}: {weight}", _gives_up(data, chosen))
 
 
@@ -62,7 +64,9 @@ def _desktop(data: Mapping[str, Any]) -> Answer:
     kept, rule = _soundest(presets, SINGLE, "single precision")
     alike = [p for p in kept if _alike(data, p)]
     if not alike:
-        return Answer("a desktop", None, f"the picture of none {rule} is known to pass for that of {data['reference']}", ())
+        return Answer(
+            "a desktop", None, f"the picture of none {rule} is known to pass for that of {data['reference']}", ()
+        )
     chosen = min(alike, key=lambda p: _total(data, p))
     why = f"the cheapest {rule}, with a picture that passes for that of {data['reference']} (ꟻLIP up to {UNSEEN})"
     return Answer("a desktop", chosen["name"], f"{why}: {_cycles(data, chosen)}", _gives_up(data, chosen))
@@ -110,7 +114,8 @@ def _cycles(data: Mapping[str, Any], preset: Entry) -> str:
     found = [(target, pareto.cycles(preset, target)) for target in data["targets"]]
     if not found or any(cycles is None for _, cycles in found):
         return f"{text.plain(preset['cost']['spirv'])} weighted SPIR-V operations"
-    return f"{', '.join(f'{cycles:g} on {target}' for target, cycles in found)} cycles"
+    (first, least), *others = found
+    return ", ".join([f"{least:g} cycles on {first}", *(f"{cycles:g} on {target}" for target, cycles in others)])
 
 
 def _gives_up(data: Mapping[str, Any], preset: Entry) -> tuple[str, ...]:
@@ -144,7 +149,9 @@ def _likeness(data: Mapping[str, Any], preset: Entry) -> list[str]:
         return []
     said = []
     if preset["model"] and preset["model"]["p99"]:
-        said.append(f"values that differ from those of {reference} by {text.number(preset['model']['p99'])} (99th percentile)")
+        said.append(
+            f"values that differ from those of {reference} by {text.number(preset['model']['p99'])} (99th percentile)"
+        )
     scene = preset["scene"]
     if scene and scene["max"]:
         seen = "" if scene["flip"] is None else f"ꟻLIP {text.number(scene['flip'])}, "
@@ -156,7 +163,9 @@ def _likeness(data: Mapping[str, Any], preset: Entry) -> list[str]:
 def _breaks(preset: Entry) -> list[str]:
     inputs = (preset["extremes"] or {}).get("inputs")
     counts = [(name, broken(preset, modes)) for name, modes in (("single", SINGLE), ("half", HALF))]
-    return [f"{text.count(n)} of {text.count(inputs)} extreme inputs break in {name} precision" for name, n in counts if n]
+    return [
+        f"{text.count(n)} of {text.count(inputs)} extreme inputs break in {name} precision" for name, n in counts if n
+    ]
 
 
 def _light(preset: Entry) -> str | None:

@@ -8,7 +8,9 @@ import numpy as np
 SMALLEST, LARGEST = 1e-7, 1.0
 
 # From dark to light, so that it reads without colours too.
-_COLORS = np.array([[13, 17, 48], [44, 51, 122], [36, 110, 140], [66, 166, 116], [177, 204, 80], [255, 238, 150]], float)
+_COLORS = np.array(
+    [[13, 17, 48], [44, 51, 122], [36, 110, 140], [66, 166, 116], [177, 204, 80], [255, 238, 150]], float
+)
 
 
 def heat(errors: np.ndarray) -> np.ndarray:

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from . import answers, pareto, tables
+from . import answers, pareto, tables, text
 from .pareto import HALF
 from .tables import Table
 
 LEGEND = """\
 `differs by` is the 99th percentile of the relative difference from the exact one, in double: what the formula leaves out.
 `rounding` is that of float32 against double of the same formula, as written or `precise`, whichever is worse; `in half`
-that of `mediump`. `breaks` counts the {inputs} extreme inputs at which the value is not finite or negative. Cycles are those
-of a wave of 64, by Mesa's own model of chips that need not be there, for the whole `shade`; `SPIR-V` is a weighted
-count of operations. `scene /255` is the largest difference from the picture by `{reference}`, ꟻLIP the mean of what an
-eye sees of it."""
+that of `mediump`. `breaks` counts the {inputs} extreme inputs at which the value is not finite or negative, `half breaks`
+those of `mediump`. {targets} are cycles of the whole `shade` for a wave of 64, by Mesa's own model of chips that need not
+be there, `SPIR-V` a weighted count of operations. `scene /255` is the largest difference from the picture by
+`{reference}`, ꟻLIP the mean of what an eye sees of it."""
 
 
 def document(data: Mapping[str, Any]) -> str:
@@ -58,8 +58,9 @@ def table(made: Table) -> str:
 def legend(data: Mapping[str, Any]) -> str:
     """What the columns of a summary are."""
     counts = {entry["extremes"]["inputs"] for entry in tables.every(data) if entry["extremes"]}
-    inputs = " or ".join(tables.text.count(n) for n in sorted(counts)) or "no"
-    return LEGEND.format(inputs=inputs, reference=data["reference"])
+    inputs = " or ".join(text.count(n) for n in sorted(counts)) or "no"
+    targets = ", ".join(f"`{target}`" for target in data["targets"]) or "Targets"
+    return LEGEND.format(inputs=inputs, targets=targets, reference=data["reference"])
 
 
 def machine(data: Mapping[str, Any]) -> str:

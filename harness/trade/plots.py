@@ -13,10 +13,12 @@ from .pareto import Point
 
 WIDTH, HEIGHT = 290, 270  # of a panel with all that belongs to it
 COLUMNS = 4
-LEFT, RIGHT, TOP, BOTTOM = 46, 12, 34, 40  # of a panel, outside its frame
+LEFT, RIGHT, TOP, BOTTOM = 48, 8, 34, 44  # of a panel, outside its frame
 CHARACTER, LINE = 6.9, 13  # of a label, as wide as capitals of 11 pixels in the widest of usual sans-serif fonts
-RADIUS = 5  # of a mark, with its outline
+RADIUS = 7  # of a mark, with its ring
+THICK = 1.5  # half the width of the front's line, with room
 FLOOR = 1e-9  # below it errors are drawn as this
+HEADROOM = 0.6  # decades above the largest error and below the smallest
 
 
 @dataclass(frozen=True)
@@ -106,7 +108,7 @@ def _panel(
     entries: Sequence[Mapping[str, Any]],
     points: Sequence[Point],
     frame: Box,
-    decades: tuple[int, int],
+    decades: tuple[float, float],
 ) -> Panel:
     low, high = _padded([point.cost for point in points])
 
@@ -118,58 +120,63 @@ def _panel(
         share = (exponent - decades[0]) / (decades[1] - decades[0])
         return frame.bottom - share * (frame.bottom - frame.top)
 
+    corners = [(x(point.cost), y(point.error)) for point in pareto.front(points)]
+    steps = [(corners[0][0], frame.top)]
+    for corner in corners:
+        steps += [(corner[0], steps[-1][1]), corner]
+    steps.append((frame.right, corners[-1][1]))
+    steps = steps[1:]
     beaten = pareto.dominated(points)
     places = [(x(point.cost), y(point.error)) for point in points]
     labels = [_short(point.name, points) for point in points]
-    boxes = place(places, labels, frame)
+    boxes = place(places, labels, frame, steps)
     measured = {entry["name"]: entry for entry in entries}
     marks = [
         Mark(
             *at,
             label,
             box,
-            _distance(at, box) > 2 * RADIUS,
+            _distance(at, box) > RADIUS + 5,
             beaten.get(point.name),
             point.name == default,
             _tip(point, measured[point.name], beaten.get(point.name)),
         )
         for point, at, label, box in zip(points, places, labels, boxes, strict=True)
     ]
-    corners = [(x(point.cost), y(point.error)) for point in pareto.front(points)]
-    steps = [(corners[0][0], frame.top)]
-    for corner in corners:
-        steps += [(corner[0], steps[-1][1]), corner]
-    steps.append((frame.right, corners[-1][1]))
-    exponents = range(decades[0], decades[1] + 1, 2 if decades[1] - decades[0] > 4 else 1)
+    first, last = math.ceil(decades[0]), math.floor(decades[1])
+    exponents = range(last, first - 1, -2 if last - first > 4 else -1)
     return Panel(
         title,
         macro,
         frame,
         marks,
-        steps[1:],
+        steps,
         [(x(tick), f"{tick:g}") for tick in _ticks(low, high, 6 if frame.right - frame.left > WIDTH else 3)],
         [(y(10.0**exponent), f"1e{exponent}" if exponent else "1") for exponent in exponents],
     )
 
 
-def place(places: Sequence[tuple[float, float]], labels: Sequence[str], frame: Box) -> list[Box]:
-    """A box for the label of each mark: beside it where there is room, else the nearest free place within the frame."""
+def place(
+    places: Sequence[tuple[float, float]],
+    labels: Sequence[str],
+    frame: Box,
+    line: Sequence[tuple[float, float]] = (),
+) -> list[Box]:
+    """A box for the label of each mark: beside it where there is room, else the nearest place within the frame that no
+    mark, no other label and no part of ``line`` takes, its corners, one straight above or beside the last."""
     taken = [Box(x - RADIUS, y - RADIUS, x + RADIUS, y + RADIUS) for x, y in places]
-    boxes: list[Box] = []
+    for (x, y), (to_x, to_y) in zip(line, line[1:], strict=False):
+        taken.append(Box(min(x, to_x) - THICK, min(y, to_y) - THICK, max(x, to_x) + THICK, max(y, to_y) + THICK))
     for (x, y), label in zip(places, labels, strict=True):
         width = len(label) * CHARACTER
-
-        def badness(box: Box) -> float:
-            return box.outside(frame) + sum(box.overlap(other) for other in [*taken, *boxes])
-
         around = [Box(left, top, left + width, top + LINE) for left, top in _around(x, y, width)]
-        boxes.append(next((box for box in around if badness(box) == 0), None) or min(around, key=badness))
-    return boxes
+        taken.append(min(around, key=lambda box: box.outside(frame) + sum(box.overlap(other) for other in taken)))
+    return taken[len(taken) - len(places) :]
 
 
 def _around(x: float, y: float, width: float) -> list[tuple[float, float]]:
     """Left and top of boxes around a mark, the nearest first: right, left, above and below, then farther out."""
-    middle, gap = y - LINE / 2, RADIUS + 2
+    middle, gap = y - LINE / 2, RADIUS + 1
     found = [(x + gap, middle), (x - gap - width, middle), (x - width / 2, y - gap - LINE), (x - width / 2, y + gap)]
     for ring in range(1, 12):
         shift = ring * 7
@@ -199,11 +206,10 @@ def _tip(point: Point, entry: Mapping[str, Any], by: str | None) -> str:
     return told + (f"; dominated by {by}" if by else "")
 
 
-def _decades(errors: Sequence[float]) -> tuple[int, int]:
+def _decades(errors: Sequence[float]) -> tuple[float, float]:
     """Exponents of ten around all errors that are finite and not 0."""
     exponents = [math.log10(max(wrong, FLOOR)) for wrong in errors if wrong < math.inf] or [0.0]
-    low, high = math.floor(min(exponents)), math.ceil(max(exponents))
-    return low, max(high, low + 1)
+    return min(exponents) - HEADROOM, max(exponents) + HEADROOM
 
 
 def _padded(costs: Sequence[float]) -> tuple[float, float]:

@@ -32,7 +32,7 @@ def summary(data: Mapping[str, Any], entries: Sequence[Entry]) -> Table:
         "in half",
         "breaks",
         "half breaks",
-        f"cycles: {', '.join(data['targets'])}",
+        *data["targets"],
         "SPIR-V",
         *(f"ns, {short(device)}" for _, device in devices),
         "scene /255",
@@ -41,7 +41,6 @@ def summary(data: Mapping[str, Any], entries: Sequence[Entry]) -> Table:
     rows = []
     for entry in entries:
         scene = entry["scene"] or {}
-        found = [text.NONE if c is None else f"{c:g}" for c in (pareto.cycles(entry, t) for t in data["targets"])]
         rows.append(
             (
                 entry["name"],
@@ -50,7 +49,7 @@ def summary(data: Mapping[str, Any], entries: Sequence[Entry]) -> Table:
                 text.number(_p99((entry["roundoff"] or {}).get("mediump"))),
                 text.count(broken(entry, SINGLE)),
                 text.count(broken(entry, HALF)),
-                ", ".join(found),
+                *(text.plain(pareto.cycles(entry, target), 4) for target in data["targets"]),
                 text.plain((entry["cost"] or {}).get("spirv")),
                 *(text.plain(clock and clock["ns"]) for clock in (timed(entry, device) for device in devices)),
                 text.NONE if scene.get("max") is None else f"{scene['max']:g}",
@@ -66,9 +65,7 @@ def sources(entries: Sequence[Entry]) -> Table:
     for entry in entries:
         macros = ", ".join(entry["macros"].values())
         suits = ", ".join(entry.get("suits") or ()) or text.NONE
-        rows.append(
-            (entry["name"], entry["title"], entry["source"], entry.get("domain") or text.NONE, suits, macros)
-        )
+        rows.append((entry["name"], entry["title"], entry["source"], entry.get("domain") or text.NONE, suits, macros))
     return Table(("", "title", "source", "meant for", "suits", "macros"), tuple(rows))
 
 
@@ -109,7 +106,11 @@ def energy(entries: Sequence[Entry]) -> Table:
 def costs(data: Mapping[str, Any], entries: Sequence[Entry]) -> Table:
     """Instructions, registers, latency and cycles on each target."""
     parts = ("instructions", "vgprs", "latency", "cycles")
-    columns = ("", *(f"{target}, {part}" for target in data["targets"] for part in parts), "SPIR-V operations, weighted")
+    columns = (
+        "",
+        *(f"{target}, {part}" for target in data["targets"] for part in parts),
+        "SPIR-V operations, weighted",
+    )
     rows = []
     for entry in entries:
         cost = entry["cost"] or {}

@@ -28,6 +28,26 @@ TERMS = {
         "V_SEPARABLE": (0.96, 4e-7, 4e-7, 4e-3, (284, 113, 113), 10),
         "V_KELEMEN": (0.99, 1e-7, 1e-7, 1e-3, (232, 98, 98), 0),
     }),
+    "F": ("Fresnel", "BRDF_F", "F_MULTIPLY", "F_MULTIPLY", {
+        "F_POW": (0, 3e-6, 3e-6, 4e-2, (320, 118, 118), 0),
+        "F_MULTIPLY": (0, 2e-7, 2e-7, 2e-3, (288, 114, 114), 0),
+        "F_GAUSSIAN": (0.069, 3e-6, 3e-6, 4e-2, (304, 116, 116), 0),
+        "F_DIELECTRIC": (0.2, 3e-7, 3e-7, 3e-3, (352, 134, 134), 0),
+        "F_F82": (0.1, 3e-7, 3e-7, 3e-3, (330, 128, 128), 0),
+    }),
+    "diffuse": ("Diffuse", "BRDF_DIFFUSE", "DIFFUSE_FRESNEL", "DIFFUSE_FRESNEL", {
+        "DIFFUSE_FRESNEL": (0, 2e-7, 2e-7, 2e-3, (288, 114, 114), 0),
+        "DIFFUSE_LAMBERT": (0.9, 1e-7, 1e-7, 2e-3, (264, 102, 102), 0),
+        "DIFFUSE_F0": (0.85, 1e-7, 1e-7, 2e-3, (268, 104, 104), 0),
+        "DIFFUSE_SHIRLEY": (0.7, 3e-7, 3e-7, 2e-3, (310, 124, 124), 0),
+        "DIFFUSE_BURLEY": (0.6, 3e-7, 3e-7, 2e-3, (364, 154, 154), 0),
+        "DIFFUSE_EON": (0.9, 4e-7, 4e-7, 2e-3, (420, 170, 170), 0),
+        "DIFFUSE_ENERGY": (0.5, 3e-7, 3e-7, 2e-3, (330, 130, 130), 0),
+    }),
+    "multi": ("Multiple scattering", "BRDF_MULTI", "MULTI_NONE", "MULTI_NONE", {
+        "MULTI_NONE": (0, 0, 0, 0, (288, 114, 114), 0),
+        "MULTI_FITTED": (0.4, 3e-7, 3e-7, 2e-3, (320, 128, 128), 0),
+    }),
     "decode": ("sRGB decode", "SRGB_DECODE", "SRGB_PIECEWISE", "SRGB_POWER", {
         "SRGB_POWER": (0.9, 2e-6, 2e-6, 2e-2, (408, 148, 148), 0),
         "SRGB_PIECEWISE": (0, 2e-6, 2e-6, 2e-2, (468, 168, 168), 0),
@@ -93,7 +113,9 @@ def trade() -> dict[str, Any]:
             entry(rung, {macro: rung}, (*figures, 0, 1.857, figures[0] * 10, figures[0] / 10, 1.0))
             for rung, figures in rungs.items()
         ]
-        terms.append({"name": name, "title": title, "macro": macro, "exact": exact, "default": default, "rungs": entries})
+        terms.append(
+            {"name": name, "title": title, "macro": macro, "exact": exact, "default": default, "rungs": entries}
+        )
     return copy.deepcopy(
         {
             "schema": 1,

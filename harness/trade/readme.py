@@ -1,0 +1,60 @@
+"""The trade in a README: the answers and the table of the presets between two marks, and whether they are still so."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ..errors import HarnessError
+from . import answers, markdown, tables
+
+BEGIN = "<!-- the trade: written by `make trade-readme` from docs/trade.json -->"
+END = "<!-- end of the trade -->"
+#: of the README's own lines
+WIDTH = 124
+
+INTRODUCTION = """\
+What each preset of the shading model costs and how wrong it is, measured by `make trade`: it writes `build/trade/`, a page \
+with plots, maps of the errors and pictures of the differences, the same for each rung of each term, and `trade.json`. \
+`make trade-readme` writes this table and [`docs/trade.json`](docs/trade.json) anew."""
+
+
+def block(data: Mapping[str, Any]) -> str:
+    """What stands between the marks, the marks too."""
+    named = [
+        f"for {answer.use} **{answer.name}**" if answer.name else f"for {answer.use} no answer"
+        for answer in answers.answers(data)
+    ]
+    parts = [
+        BEGIN,
+        _wrapped(INTRODUCTION),
+        _wrapped(f"By its rules: {', '.join(named)}; it says why, and what one gives up."),
+        markdown.table(tables.summary(data, data["presets"])),
+        _wrapped(markdown.legend(data)),
+        _wrapped(f"Measured on {markdown.machine(data)}; ns on {_clocks(data)}."),
+        END,
+    ]
+    return "\n\n".join(parts)
+
+
+def updated(text: str, data: Mapping[str, Any], path: Path) -> str:
+    """The README's text with the block of this trade in place of the one that is there. HarnessError, which names
+    ``path``, when it has no marks."""
+    start, end = text.find(BEGIN), text.find(END)
+    if start < 0 or end < start:
+        raise HarnessError(f"has no place for the table; put these two lines where it shall be:\n{BEGIN}\n{END}", path)
+    return text[:start] + block(data) + text[end + len(END) :]
+
+
+def _clocks(data: Mapping[str, Any]) -> str:
+    devices = [f"{device} ({backend})" for backend, device in tables.timed_by(data["presets"])]
+    return ", ".join(devices) or "nothing: no time was taken"
+
+
+def _wrapped(text: str) -> str:
+    """Filled lines, none broken within `code`."""
+    held = re.sub(r"`[^`]*`", lambda code: code[0].replace(" ", "\0"), text)
+    return textwrap.fill(held, WIDTH, break_long_words=False, break_on_hyphens=False).replace("\0", " ")
