@@ -44,6 +44,10 @@ class DomainError(HarnessError, ValueError):
     """Inputs are described by what is no domain, or does not suit the parameter."""
 
 
+class LadderError(HarnessError, ValueError):
+    """A ladder.toml is missing, malformed or contradicts itself, or lacks what is asked for."""
+
+
 def did_you_mean(name: str, there: Iterable[str]) -> str:
     """What a message about an unknown name ends with: the nearest of the names that there are, or nothing."""
     from difflib import get_close_matches  # errors alone pay for it

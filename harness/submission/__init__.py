@@ -94,11 +94,12 @@ def _evidence(
         for region in part.regions:
             regions.box(region.pass_name)  # before the tests, which take longer
     costs = evidence.costs(parts, path.parent)
+    trade = evidence.trade(path.parent)
     results = None
     if tests:
         progress(f"running the tests in {', '.join(parts.tests)}")
         results = evidence.run_tests(parts, path.parent)
-    return report.Evidence(quoted, regions, results, costs)
+    return report.Evidence(quoted, regions, results, costs, trade)
 
 
 def _check(folder: Path, name: str) -> list[dict[str, Any]]:

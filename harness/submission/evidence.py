@@ -22,6 +22,7 @@ from ..glsl_syntax import without_comments
 from ..project import Project
 from ..render import Renderer
 from ..tokens import Text
+from ..trade import file, markdown, tables
 from .exercise import Exercise, Quotation, Region
 
 # ---- Lines of shaders ------------------------------------------------------------------------------------------------
@@ -234,3 +235,26 @@ def costs(exercise: Exercise, folder: Path) -> Costs | None:
                 row.append(str(cost.inverse_throughput))
                 driver = cost.driver
     return Costs(columns, [(row.label, cells) for row, cells in zip(exercise.costs, numbers, strict=True)], driver)
+
+
+# ---- The trade -------------------------------------------------------------------------------------------------------
+
+#: beside the project: what `harness trade` measured
+TRADE = "build/trade/trade.json"
+
+
+@dataclass(frozen=True)
+class Trade:
+    """The presets of the shading model, what each costs and how wrong it is; ``legend`` says what the columns are."""
+
+    table: tables.Table
+    legend: str
+    machine: str
+
+
+def trade(folder: Path) -> Trade | None:
+    """What was measured of a project last; None when that was nothing. HarnessError when the file is no trade."""
+    if not (folder / TRADE).is_file():
+        return None
+    data = file.read(folder / TRADE)
+    return Trade(tables.summary(data, data["presets"]), markdown.legend(data), markdown.machine(data))

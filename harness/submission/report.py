@@ -17,7 +17,7 @@ from ..picture import data_address
 from .exercise import Exercise
 
 if TYPE_CHECKING:
-    from .evidence import Costs, Quoted, Regions, TestResults
+    from .evidence import Costs, Quoted, Regions, TestResults, Trade
 
 _TEMPLATE = Path(__file__).with_name("report.html.jinja")
 LONG = 26  # lines; what is longer is folded
@@ -32,6 +32,7 @@ class Evidence:
     regions: Regions
     tests: TestResults | None
     costs: Costs | None
+    trade: Trade | None
 
 
 def write(
@@ -71,6 +72,7 @@ def write(
         tests=evidence.tests and evidence.tests.all,
         findings=findings,
         costs=evidence.costs,
+        trade=evidence.trade,
         files=files,
         driver=info()["driver"],
         long=LONG,

@@ -1,20 +1,19 @@
-"""Which preset to take for a phone, for a desktop and for ground truth, and what one gives up: computed, by stated rules."""
+"""Which preset to take for a phone, a desktop and ground truth, and what one gives up: computed, by stated rules."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from . import pareto, text
-from .pareto import HALF, SINGLE
+from . import figures, text
+from .figures import HALF, SINGLE, Entry, broken
 
-#: the mean ꟻLIP error under which a picture passes for the reference
-UNSEEN = 0.01
+#: how far a desktop's picture may be from the reference's, in 1/255 of a channel of any pixel
+BUDGET = 1.0
 #: what a white furnace may return beyond what it gets, and still make no light: fits and quadratures are not better
 FURNACE = 0.01
-
-Entry = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -35,24 +34,14 @@ def answers(data: Mapping[str, Any]) -> list[Answer]:
     return [_phone(data), _desktop(data), _truth(data)]
 
 
-def broken(entry: Entry, modes: Sequence[str]) -> int | None:
-    """At how many of the extreme inputs the value is not finite, or negative, in the worst of the modes; None where that
-    was not measured."""
-    measured = entry["extremes"] or {}
-    counts = [measured.get(mode) for mode in modes]
-    if any(found is None for found in counts):
-        return None
-    return max(found["non_finite"] + found["negative"] for found in counts)
-
-
 def _phone(data: Mapping[str, Any]) -> Answer:
-    presets = [p for p in data["presets"] if broken(p, HALF) is not None and (p["cost"] or {}).get("spirv") is not None]
+    presets = [p for p in data["presets"] if broken(p, HALF) is not None and figures.operations(p) is not None]
     if not presets:
         return Answer("a phone", None, "no preset has both its extremes in half precision and its cost", ())
     kept, rule = _soundest(presets, HALF, "half precision, which phones compute in")
-    chosen = min(kept, key=lambda p: p["cost"]["spirv"])
+    chosen = min(kept, key=figures.operations)
     weight = (
-        f"{text.plain(chosen['cost']['spirv'])} weighted SPIR-V operations (no chip of a phone is among the targets)"
+        f"{text.plain(figures.operations(chosen))} weighted SPIR-V operations (no chip of a phone is among the targets)"
     )
     return Answer("a phone", chosen["name"], f"the cheapest {rule}: {weight}", _gives_up(data, chosen))
 
@@ -64,24 +53,28 @@ def _desktop(data: Mapping[str, Any]) -> Answer:
     kept, rule = _soundest(presets, SINGLE, "single precision")
     alike = [p for p in kept if _alike(data, p)]
     if not alike:
-        return Answer(
-            "a desktop", None, f"the picture of none {rule} is known to pass for that of {data['reference']}", ()
-        )
+        why = f"none {rule} is known to draw the scene within {BUDGET:g}/255 of {data['reference']}"
+        return Answer("a desktop", None, why, ())
     chosen = min(alike, key=lambda p: _total(data, p))
-    why = f"the cheapest {rule}, with a picture that passes for that of {data['reference']} (ꟻLIP up to {UNSEEN})"
+    why = f"the cheapest {rule}, with the scene within {BUDGET:g}/255 of {data['reference']}"
     return Answer("a desktop", chosen["name"], f"{why}: {_cycles(data, chosen)}", _gives_up(data, chosen))
 
 
 def _truth(data: Mapping[str, Any]) -> Answer:
-    presets = [p for p in data["presets"] if broken(p, SINGLE) is not None and p["energy"] and p["roundoff"]]
+    presets = [p for p in data["presets"] if broken(p, SINGLE) is not None and p["energy"]]
+    presets = [p for p in presets if figures.error(p) is not None]
     if not presets:
-        return Answer("ground truth", None, "no preset has both its extremes in single precision and its energy", ())
+        return Answer("ground truth", None, "no preset has its extremes, its energy and its error", ())
     kept, rule = _soundest(presets, SINGLE, "single precision")
-    excess = {p["name"]: max(p["energy"]["furnace_max"] - 1 - FURNACE, 0) for p in kept}
-    chosen = min(kept, key=lambda p: (excess[p["name"]], max(p["roundoff"][mode]["p99"] for mode in SINGLE)))
-    returned = text.plain(chosen["energy"]["furnace_max"], 4)
-    law = "that makes no light" if excess[chosen["name"]] == 0 else "that makes the least light"
-    why = f"the most accurate {rule}, and {law}: a white furnace gets back at most {returned} of what it gave"
+    lawful = [p for p in kept if _excess(p) == 0]
+    if lawful:
+        chosen = min(lawful, key=figures.rounding)
+        returned = text.plain(chosen["energy"]["furnace_max"], 4)
+        law = f"makes no light: a white furnace gets back at most {returned} of what it gave"
+        why = f"the most accurate {rule} and {law}"
+    else:
+        chosen = min(kept, key=figures.error)
+        why = f"the most accurate {rule}; all of them make light"
     return Answer("ground truth", chosen["name"], why, _gives_up(data, chosen))
 
 
@@ -96,24 +89,19 @@ def _soundest(presets: Sequence[Entry], modes: Sequence[str], where: str) -> tup
 
 
 def _alike(data: Mapping[str, Any], preset: Entry) -> bool:
-    if preset["name"] == data["reference"]:
-        return True
-    scene = preset["scene"]
-    if not scene:
-        return False
-    return scene["max"] <= 1 if scene["flip"] is None else scene["flip"] <= UNSEEN
+    return preset["name"] == data["reference"] or (preset["scene"] is not None and preset["scene"]["max"] <= BUDGET)
 
 
 def _total(data: Mapping[str, Any], preset: Entry) -> float | None:
     """Cycles on all targets together, or weighted operations where no driver told cycles."""
-    found = [pareto.cycles(preset, target) for target in data["targets"]]
-    return (preset["cost"] or {}).get("spirv") if not found or None in found else sum(found)
+    found = [figures.cycles(preset, target) for target in data["targets"]]
+    return figures.operations(preset) if not found or None in found else sum(found)
 
 
 def _cycles(data: Mapping[str, Any], preset: Entry) -> str:
-    found = [(target, pareto.cycles(preset, target)) for target in data["targets"]]
+    found = [(target, figures.cycles(preset, target)) for target in data["targets"]]
     if not found or any(cycles is None for _, cycles in found):
-        return f"{text.plain(preset['cost']['spirv'])} weighted SPIR-V operations"
+        return f"{text.plain(figures.operations(preset))} weighted SPIR-V operations"
     (first, least), *others = found
     return ", ".join([f"{least:g} cycles on {first}", *(f"{cycles:g} on {target}" for target, cycles in others)])
 
@@ -169,7 +157,12 @@ def _breaks(preset: Entry) -> list[str]:
 
 
 def _light(preset: Entry) -> str | None:
-    energy = preset["energy"]
-    if not energy or energy["furnace_max"] <= 1 + FURNACE:
+    if not preset["energy"] or _excess(preset) == 0:
         return None
-    return f"energy: a white furnace gets back up to {text.plain(energy['furnace_max'])} times what it gave"
+    return f"energy: a white furnace gets back up to {text.plain(preset['energy']['furnace_max'])} times what it gave"
+
+
+def _excess(preset: Entry) -> float:
+    """What a white furnace gets back beyond what it gave; infinite where that is no number."""
+    returned = preset["energy"]["furnace_max"]
+    return math.inf if returned is None or math.isnan(returned) else max(returned - 1 - FURNACE, 0)

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from . import answers, pareto, tables, text
-from .pareto import HALF
+from . import answers, figures, pareto, tables, text
+from .figures import HALF
 from .tables import Table
 
 LEGEND = """\
-`differs by` is the 99th percentile of the relative difference from the exact one, in double: what the formula leaves out.
-`rounding` is that of float32 against double of the same formula, as written or `precise`, whichever is worse; `in half`
-that of `mediump`. `breaks` counts the {inputs} extreme inputs at which the value is not finite or negative, `half breaks`
-those of `mediump`. {targets} are cycles of the whole `shade` for a wave of 64, by Mesa's own model of chips that need not
-be there, `SPIR-V` a weighted count of operations. `scene /255` is the largest difference from the picture by
-`{reference}`, ꟻLIP the mean of what an eye sees of it."""
+`differs by` is the 99th percentile of the relative difference from the exact one, in double: what the formula leaves
+out. `rounding` is that of float32 against double of the same formula, as written or `precise`, whichever is worse;
+`in half` that of `mediump`. `breaks` counts the {inputs} extreme inputs at which the value is not finite or negative,
+`half breaks` those of `mediump`. {targets} are cycles of the whole `shade` for a wave of 64, by Mesa's own model of
+chips that need not be there, `SPIR-V` a weighted count of operations. `scene /255` is the largest difference from the
+picture by `{reference}`, ꟻLIP the mean of what an eye sees of it."""
 
 
 def document(data: Mapping[str, Any]) -> str:
@@ -72,12 +72,12 @@ def dominated(data: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]) -> 
     """Who is beaten in cycles and error at once, by whom, on which targets where not on all, and if not in half."""
     found: dict[tuple[str, str], list[str]] = {}
     for target in data["targets"]:
-        for name, by in pareto.dominated(pareto.points(entries, target)).items():
+        for name, by in pareto.dominated(figures.points(entries, target)).items():
             found.setdefault((name, by), []).append(target)
     said = []
     for (name, by), on in found.items():
         places = "" if len(on) == len(data["targets"]) else f" on {', '.join(on)}"
-        half = [pareto.points(entries, target, HALF) for target in on]
+        half = [figures.points(entries, target, HALF) for target in on]
         spared = all(name in {p.name for p in pareto.front(points)} for points in half)
         said.append(f"{name} by {by}{places}" + (" (but not in half precision)" if spared else ""))
     return said

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import HarnessError
 from ..picture import data_address
-from . import answers, images, markdown, plots, tables
+from . import answers, illustrate, images, markdown, plots, tables
 from .tables import Table
 
 _TEMPLATES = Path(__file__).with_name("templates")
@@ -42,17 +42,19 @@ class Group:
     extremes: Table
     energy: Table
     costs: Table
-    maps: Sequence[tuple[str, str]]
+    maps: Sequence[tuple[str, Sequence[tuple[str, str]]]]  # what of, then of which entry
     beaten: Sequence[str]
 
 
 def page(
     data: Mapping[str, Any],
     pictures: Mapping[str, np.ndarray],
-    hemispheres: Mapping[str, np.ndarray],
+    maps: Mapping[str, Mapping[str, np.ndarray]],
 ) -> str:
-    """The page. ``pictures``: preset -> the scene, (h, w, 4) uint8, the reference's among them. ``hemispheres``: preset or
-    rung -> relative errors over the directions of the light, (n, n), NaN outside the disc. HarnessError without jinja2.
+    """The page. HarnessError without jinja2.
+
+    ``pictures``: preset -> the scene, (h, w, 4) uint8, the reference's among them. ``maps``: preset or rung -> what of
+    (illustrate.FORMULA, ROUNDING) -> relative errors over the directions of the light, (n, n), NaN outside the disk.
     """
     try:
         import jinja2
@@ -65,10 +67,10 @@ def page(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    groups = [_group(data, "Presets", "", "", data["presets"], hemispheres)]
+    groups = [_group(data, "Presets", "", "", data["presets"], maps)]
     for term in data["terms"]:
         ends = f"Exact: {term['exact']}. Default: {term['default']}."
-        groups.append(_group(data, term["title"], term["macro"], ends, term["rungs"], hemispheres))
+        groups.append(_group(data, term["title"], term["macro"], ends, term["rungs"], maps))
     everything = tables.every(data)
     return environment.get_template("index.html.jinja").render(
         data=data,
@@ -82,6 +84,11 @@ def page(
         clocks=[(*device, tables.times(everything, device)) for device in tables.timed_by(everything)],
         missing=tables.missing(everything),
         machine=markdown.machine(data),
+        view={
+            "degrees": f"{illustrate.VIEW:g}",
+            "roughness": illustrate.ROUGHNESS,
+            "metalness": illustrate.METALNESS,
+        },
         scale=data_address(images.scale(256)),
         scale_ticks=_SCALE,
         headed=headed,
@@ -102,9 +109,10 @@ def _group(
     macro: str,
     ends: str,
     entries: Sequence[Mapping[str, Any]],
-    hemispheres: Mapping[str, np.ndarray],
+    maps: Mapping[str, Mapping[str, np.ndarray]],
 ) -> Group:
-    shown = [entry["name"] for entry in entries if entry["name"] in hemispheres]
+    shown = [entry["name"] for entry in entries if entry["name"] in maps]
+    kinds = dict.fromkeys(kind for name in shown for kind in maps[name])
     return Group(
         title,
         macro,
@@ -114,7 +122,7 @@ def _group(
         tables.extremes(entries),
         tables.energy(entries),
         tables.costs(data, entries),
-        [(name, data_address(images.heat(hemispheres[name]))) for name in shown],
+        [(kind, [(name, data_address(images.heat(maps[name][kind]))) for name in shown]) for kind in kinds],
         markdown.dominated(data, entries),
     )
 

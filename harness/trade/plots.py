@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from . import pareto, text
+from . import figures, pareto, text
 from .pareto import Point
 
 WIDTH, HEIGHT = 290, 270  # of a panel with all that belongs to it
@@ -83,7 +83,7 @@ def plot(data: Mapping[str, Any], target: str) -> Plot | None:
     """The plot of one target; None where nothing was measured on it. The axis of errors is the same in all panels."""
     groups = [("Presets", "", None, data["presets"], 2)]
     groups += [(t["title"], t["macro"], t["default"], t["rungs"], 1) for t in data["terms"]]
-    known = [(*group, pareto.points(group[3], target)) for group in groups]
+    known = [(*group, figures.points(group[3], target)) for group in groups]
     known = [group for group in known if group[-1]]
     if not known:
         return None

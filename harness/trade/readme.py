@@ -17,8 +17,9 @@ END = "<!-- end of the trade -->"
 WIDTH = 124
 
 INTRODUCTION = """\
-What each preset of the shading model costs and how wrong it is, measured by `make trade`: it writes `build/trade/`, a page \
-with plots, maps of the errors and pictures of the differences, the same for each rung of each term, and `trade.json`. \
+What each preset of the shading model costs and how wrong it is, measured by `make trade`: it writes `build/trade/`, a \
+page with plots, maps of the errors and pictures of the differences, the same for each rung of each term, and \
+`trade.json`. \
 `make trade-readme` writes this table and [`docs/trade.json`](docs/trade.json) anew."""
 
 
@@ -41,12 +42,17 @@ def block(data: Mapping[str, Any]) -> str:
 
 
 def updated(text: str, data: Mapping[str, Any], path: Path) -> str:
-    """The README's text with the block of this trade in place of the one that is there. HarnessError, which names
-    ``path``, when it has no marks."""
+    """The README's text with the block of this trade in place of the one that is there. HarnessError without marks."""
+    start, end = place(text, path)
+    return text[:start] + block(data) + text[end:]
+
+
+def place(text: str, path: Path) -> tuple[int, int]:
+    """Where the block begins and ends in the text of the README at ``path``. HarnessError without marks."""
     start, end = text.find(BEGIN), text.find(END)
     if start < 0 or end < start:
         raise HarnessError(f"has no place for the table; put these two lines where it shall be:\n{BEGIN}\n{END}", path)
-    return text[:start] + block(data) + text[end + len(END) :]
+    return start, end + len(END)
 
 
 def _clocks(data: Mapping[str, Any]) -> str:
@@ -56,5 +62,5 @@ def _clocks(data: Mapping[str, Any]) -> str:
 
 def _wrapped(text: str) -> str:
     """Filled lines, none broken within `code`."""
-    held = re.sub(r"`[^`]*`", lambda code: code[0].replace(" ", "\0"), text)
+    held = re.sub(r"`[^`]*`", lambda code: code[0].replace(" ", "\0"), " ".join(text.split()))
     return textwrap.fill(held, WIDTH, break_long_words=False, break_on_hyphens=False).replace("\0", " ")

@@ -6,11 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from . import pareto, text
-from .answers import broken
-from .pareto import HALF, SINGLE
+from . import figures, text
+from .figures import HALF, SINGLE, Entry
 
-Entry = Mapping[str, Any]
 MODES = ("as-written", "precise", "mediump", "double")
 
 
@@ -44,13 +42,13 @@ def summary(data: Mapping[str, Any], entries: Sequence[Entry]) -> Table:
         rows.append(
             (
                 entry["name"],
-                text.number(_p99(entry["model"])),
-                text.number(rounding(entry)),
-                text.number(_p99((entry["roundoff"] or {}).get("mediump"))),
-                text.count(broken(entry, SINGLE)),
-                text.count(broken(entry, HALF)),
-                *(text.plain(pareto.cycles(entry, target), 4) for target in data["targets"]),
-                text.plain((entry["cost"] or {}).get("spirv")),
+                text.number(figures.p99(entry["model"])),
+                text.number(figures.rounding(entry)),
+                text.number(figures.rounding(entry, HALF)),
+                text.count(figures.broken(entry, SINGLE)),
+                text.count(figures.broken(entry, HALF)),
+                *(text.plain(figures.cycles(entry, target), 4) for target in data["targets"]),
+                text.plain(figures.operations(entry)),
                 *(text.plain(clock and clock["ns"]) for clock in (timed(entry, device) for device in devices)),
                 text.NONE if scene.get("max") is None else f"{scene['max']:g}",
                 text.number(scene.get("flip")),
@@ -157,12 +155,6 @@ def short(device: str) -> str:
     return device.partition(" (")[0]
 
 
-def rounding(entry: Entry) -> float | None:
-    """The 99th percentile of the rounding in single precision, the worse of as written and ``precise``."""
-    found = [_p99((entry["roundoff"] or {}).get(mode)) for mode in SINGLE]
-    return None if None in found else max(found)
-
-
 def where(spread: Mapping[str, Any] | None) -> str:
     """The inputs at which an error is largest: NoL 0.25, alpha 0.01."""
     at = (spread or {}).get("at")
@@ -175,7 +167,3 @@ def _value(value: Any) -> str:
     if isinstance(value, list | tuple):
         return f"({', '.join(_value(part) for part in value)})"
     return text.number(value) if isinstance(value, int | float) else str(value)
-
-
-def _p99(spread: Mapping[str, Any] | None) -> float | None:
-    return None if spread is None else spread["p99"]

@@ -53,3 +53,12 @@ def test_the_amplification_is_a_power_of_two_that_clips_nothing(most, factor):
     got = images.amplification(one_pixel(0, most, 0), one_pixel(0, 0, 0))
     assert got == factor
     assert most * got <= 255 < 2 * most * got
+
+
+def test_one_pixel_in_a_hundred_may_be_clipped():
+    """Else a glint would leave the rest in the dark."""
+    off = np.ones((1, 200, 4), np.uint8)
+    off[0, :1] = 255
+    assert images.amplification(off, np.zeros_like(off)) == 128
+    off[0, :4] = 255
+    assert images.amplification(off, np.zeros_like(off)) == 1

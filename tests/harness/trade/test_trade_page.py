@@ -23,7 +23,7 @@ def data():
 
 
 def made(data):
-    return page.page(data, trade_data.pictures(), trade_data.hemispheres())
+    return page.page(data, trade_data.pictures(), trade_data.maps())
 
 
 @pytest.fixture(scope="module")
@@ -100,7 +100,7 @@ def shown(html, alt):
 
 def test_each_preset_but_the_reference_is_beside_it_with_the_difference_amplified(html):
     pictures = trade_data.pictures()
-    others = {"exercise": 16, "desktop": 32, "mobile": 8, "offline": 16}  # 9, 4, 23 and 12 of 255
+    others = {"exercise": 16, "desktop": 128, "mobile": 8, "offline": 16}  # 9, 1, 23 and 12 of 255
     differences = shown(html, "The difference of the two")
     assert len(differences) == len(others)
     for (name, factor), difference in zip(others.items(), differences, strict=True):
@@ -112,9 +112,10 @@ def test_each_preset_but_the_reference_is_beside_it_with_the_difference_amplifie
 
 
 def test_each_rung_has_its_map(html):
-    for name, errors in trade_data.hemispheres().items():
-        (shown_map,) = shown(html, f"Errors of {name}")
-        assert np.array_equal(shown_map, images.heat(errors))
+    for name, kinds in trade_data.maps().items():
+        for kind, errors in kinds.items():
+            (shown_map,) = shown(html, f"{kind} of {name}")
+            assert np.array_equal(shown_map, images.heat(errors))
 
 
 def test_each_device_has_a_table_of_its_own(html):

@@ -79,27 +79,3 @@ def test_the_most_accurate_of_those_that_dominate_is_named():
 def test_equal_choices_stay_both():
     points = [Point("one", 1, 1), Point("same", 1, 1)]
     assert pareto.dominated(points) == {}
-
-
-def entry(model=0.25, written=0.5, precise=0.125, cycles=100):
-    at = {"median": 0, "max": 1, "at": {}}
-    return {
-        "name": "it",
-        "model": {"p99": model, **at},
-        "roundoff": {"as-written": {"p99": written, **at}, "precise": {"p99": precise, **at}},
-        "cost": {"navi21": {"cycles": cycles}, "spirv": 50},
-    }
-
-
-def test_the_error_is_the_formulas_and_that_of_the_worse_rounding():
-    assert pareto.error(entry()) == 0.75
-    assert pareto.error(entry(written=0.125, precise=0.5)) == 0.75
-
-
-@pytest.mark.parametrize("missing", [{"model": None}, {"roundoff": None}, {"cost": None}, {"cost": {"spirv": 50}}])
-def test_what_was_not_measured_is_left_out(missing):
-    assert pareto.points([entry() | missing], "navi21") == []
-
-
-def test_a_point_is_an_entrys_cost_and_error():
-    assert pareto.points([entry()], "navi21") == [Point("it", 100, 0.75)]

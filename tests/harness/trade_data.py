@@ -11,8 +11,8 @@ TARGETS = ("vega10", "navi21", "gfx1100")
 LAVAPIPE = {"backend": "osmesa", "device": "llvmpipe (LLVM 15.0.6, 256 bits)"}
 GPU = {"backend": "egl", "device": "Some GPU <& more>"}
 
-# Term: title, macro, exact, default, and of each rung the 99th percentile of the model's error and of rounding (as written,
-# precise, mediump), cycles on the three chips, and how many extremes are not finite in mediump.
+# Term: title, macro, exact, default, and of each rung the 99th percentile of the model's error and of rounding (as
+# written, precise, mediump), cycles on the three chips, and how many extremes are not finite in mediump.
 TERMS = {
     "D": ("Distribution", "BRDF_D", "D_EXERCISE", "D_CROSS", {
         "D_EXERCISE": (0, 0.11, 0.13, 1, (316, 122, 122), 21012),
@@ -59,7 +59,7 @@ TERMS = {
 PRESETS = {
     "exercise": (0, 0.11, 0.13, 1, (360, 138, 138), 21012, 50848, 1.857, 9, 0.012, 1.5),
     "exact": (0, 1.6e-4, 1.6e-4, 0.2, (288, 114, 114), 10, 0, 1.857, 0, 0.0, 0.85),
-    "desktop": (0.27, 0.16, 0.16, 0.9, (250, 107, 107), 2782, 0, 1.857, 4, 0.009, 0.8),
+    "desktop": (0.27, 0.16, 0.16, 0.9, (250, 107, 107), 2782, 0, 1.857, 1, 0.009, 0.8),
     "mobile": (0.99, 2e-4, 2e-4, 0.02, (210, 88, 88), 0, 0, 1.9, 23, 0.06, 0.6),
     "offline": (0.5, 1.7e-4, 1.7e-4, 0.25, (480, 190, 190), 12, 0, 1.0004, 12, 0.03, 2.1),
 }
@@ -151,9 +151,13 @@ def pictures() -> dict[str, np.ndarray]:
     return made
 
 
-def hemispheres() -> dict[str, np.ndarray]:
-    """The error of each rung over the hemisphere of directions, NaN outside."""
+def maps() -> dict[str, dict[str, np.ndarray]]:
+    """The errors of each rung over the hemisphere of directions, NaN outside."""
     y, x = np.mgrid[-1:1:33j, -1:1:33j]
     r2 = x * x + y * y
     disc = np.where(r2 <= 1, r2, np.nan)
-    return {rung: disc * (figures[0] + 1e-6) for term in TERMS.values() for rung, figures in term[4].items()}
+    return {
+        rung: {"formula": disc * figures[0], "rounding": disc * figures[2]}
+        for term in TERMS.values()
+        for rung, figures in term[4].items()
+    }
