@@ -14,7 +14,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from .. import isa, spirv_cost
+from .. import isa, ladder, spirv_cost
 from ..call import shader
 from ..chips import TARGETS
 from ..errors import HarnessError, among
@@ -22,7 +22,7 @@ from ..glsl_syntax import without_comments
 from ..project import Project
 from ..render import Renderer
 from ..tokens import Text
-from ..trade import file, markdown, tables
+from ..trade import choices, file, markdown, stale, tables
 from .exercise import Exercise, Quotation, Region
 
 # ---- Lines of shaders ------------------------------------------------------------------------------------------------
@@ -252,9 +252,16 @@ class Trade:
     machine: str
 
 
-def trade(folder: Path) -> Trade | None:
-    """What was measured of a project last; None when that was nothing. HarnessError when the file is no trade."""
-    if not (folder / TRADE).is_file():
+def trade(project: Project) -> Trade | None:
+    """What was measured of a project last; None when that was nothing.
+
+    HarnessError when the file is no trade, or one of other shaders.
+    """
+    path = project.file.parent / TRADE
+    if not path.is_file():
         return None
-    data = file.read(folder / TRADE)
+    data = file.read(path)
+    others = stale.differences(data, choices.choices(project, ladder.of_project(project)))
+    if others:
+        raise HarnessError(f"is not of these shaders: {others[0]}; `make trade` measures them", path)
     return Trade(tables.summary(data, data["presets"]), markdown.legend(data), markdown.machine(data))

@@ -6,17 +6,19 @@ import re
 import zipfile
 
 import pytest
-import trade_data
-from submission_files import write_small
+import trade_files
+from submission_files import replace, write_small
 
-from harness import HarnessError, submission
+from harness import HarnessError, sprj, submission
 from harness.submission import evidence
 from harness.trade import file
 
 
 @pytest.fixture
 def small(tmp_path):
-    return write_small(tmp_path / "small")
+    project = write_small(tmp_path / "small")
+    trade_files.write_model(project.parent / "shaders")
+    return project
 
 
 def put(project, text):
@@ -33,18 +35,25 @@ def page(project):
 
 
 def test_the_report_has_the_table_of_the_presets(small):
-    put(small, file.text(trade_data.trade()))
+    put(small, file.text(trade_files.trade()))
     text = re.sub(r"\s+", " ", re.sub(r"<[^>]*>", " ", page(small)))
     assert "What accuracy costs" in text and "Measured on cpu Some CPU" in text
-    assert "mobile 0.99 2e-4 0.02 0 0 210 88 88 78 0.6 0.006 23 0.06" in text
+    assert "exact 0 0.13 1 50 851 21 012 3 1.5 0.015 9 0.012" in text
 
 
 def test_without_a_trade_there_is_no_table(small):
-    assert evidence.trade(small.parent) is None
+    assert evidence.trade(sprj.read(small)) is None
     assert "What accuracy costs" not in page(small)
 
 
 def test_a_broken_trade_is_refused_with_what_to_do(small):
     put(small, "{")
     with pytest.raises(HarnessError, match="trade.json: is no JSON .*`make trade`"):
+        page(small)
+
+
+def test_a_trade_of_other_shaders_is_refused(small):
+    put(small, file.text(trade_files.trade()))
+    replace(small.parent / "shaders" / "model.glsl", "c + c * c", "c * c")
+    with pytest.raises(HarnessError, match="trade.json: is not of these shaders: 1 costs 6 .* not 9 .*`make trade`"):
         page(small)
