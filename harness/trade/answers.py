@@ -12,8 +12,8 @@ from .figures import HALF, SINGLE, Entry, broken
 
 #: how far a desktop's picture may be from the reference's, in 1/255 of a channel of any pixel
 BUDGET = 1.0
-#: what a white furnace may return beyond what it gets, and still make no light: fits and quadratures are not better
-FURNACE = 0.01
+#: what a white furnace may return beyond what it gets, and still make no light: fits of energy are not better
+FURNACE = 0.02
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,10 @@ def _desktop(data: Mapping[str, Any]) -> Answer:
         why = f"none {rule} is known to draw the scene within {BUDGET:g}/255 of {data['reference']}"
         return Answer("a desktop", None, why, ())
     chosen = min(alike, key=lambda p: _total(data, p))
-    why = f"the cheapest {rule}, with the scene within {BUDGET:g}/255 of {data['reference']}"
+    if chosen["name"] == data["reference"]:
+        why = f"the reference: no cheaper one {rule} draws the scene within {BUDGET:g}/255 of it"
+    else:
+        why = f"the cheapest {rule} and draws the scene within {BUDGET:g}/255 of {data['reference']}"
     return Answer("a desktop", chosen["name"], f"{why}: {_cycles(data, chosen)}", _gives_up(data, chosen))
 
 
@@ -70,7 +73,9 @@ def _truth(data: Mapping[str, Any]) -> Answer:
     if lawful:
         chosen = min(lawful, key=figures.rounding)
         returned = text.plain(chosen["energy"]["furnace_max"], 4)
-        law = f"makes no light: a white furnace gets back at most {returned} of what it gave"
+        law = (
+            f"makes no light, to {text.percent(FURNACE)}: a white furnace gets back at most {returned} of what it gave"
+        )
         why = f"the most accurate {rule} and {law}"
     else:
         chosen = min(kept, key=figures.error)
@@ -127,7 +132,9 @@ def _slower(preset: Entry, cheapest: Entry) -> str:
     """The same by the clock, on each device that timed both."""
     clocks = {(t["backend"], t["device"]): t["ns"] for t in cheapest["time"] or ()}
     both = [(t["device"], t["ns"], clocks.get((t["backend"], t["device"]))) for t in preset["time"] or ()]
-    told = [f"{text.plain(ns)} ns for {text.plain(least)} on {device}" for device, ns, least in both if least]
+    told = [
+        f"{text.plain(ns)} ns for {text.plain(least)} on {text.short(device)}" for device, ns, least in both if least
+    ]
     return f" ({'; '.join(told)})" if told else ""
 
 

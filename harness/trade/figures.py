@@ -28,7 +28,7 @@ def error(entry: Entry, modes: Sequence[str] = SINGLE) -> float | None:
 
 
 def broken(entry: Entry, modes: Sequence[str]) -> int | None:
-    """At how many of the extreme inputs the value is not finite, or negative, in the worst of the modes."""
+    """How many values at the extreme inputs are not finite or are negative, in the worst of the modes."""
     measured = entry["extremes"] or {}
     counts = [measured.get(mode) for mode in modes]
     return None if None in counts else max(found["non_finite"] + found["negative"] for found in counts)

@@ -12,16 +12,17 @@ from .tables import Table
 LEGEND = """\
 `differs by` is the 99th percentile of the relative difference from the exact one, in double: what the formula leaves
 out. `rounding` is that of float32 against double of the same formula, as written or `precise`, whichever is worse;
-`in half` that of `mediump`. `breaks` counts the {inputs} extreme inputs at which the value is not finite or negative,
-`half breaks` those of `mediump`. {targets} are cycles of the whole `shade` for a wave of 64, by Mesa's own model of
-chips that need not be there, `SPIR-V` a weighted count of operations. `scene /255` is the largest difference from the
-picture by `{reference}`, ꟻLIP the mean of what an eye sees of it."""
+`in half` that of `mediump`. `breaks` counts the values at {inputs} extreme inputs that are not finite, and those that
+are negative; `half breaks` those of `mediump`. {targets} are cycles of the whole `shade` for a wave of 64, or of the
+function itself where `shade` does not call it, by Mesa's own model of chips that need not be there; `SPIR-V` is a
+weighted count of operations. `scene /255` is the largest difference from the picture by `{reference}`, ꟻLIP the mean
+of what an eye sees of it."""
 
 
 def document(data: Mapping[str, Any]) -> str:
     """All of it, with what was not measured and why."""
     parts = [f"# The trade of {data['scene']['project']}", _answers(data), table(tables.summary(data, data["presets"]))]
-    parts.append(legend(data))
+    parts.append(text.wrapped(legend(data)))
     for term in data["terms"]:
         head = f"## {term['title']} ({term['macro']})"
         ends = f"Exact: `{term['exact']}`. Default: `{term['default']}`."
@@ -56,11 +57,11 @@ def table(made: Table) -> str:
 
 
 def legend(data: Mapping[str, Any]) -> str:
-    """What the columns of a summary are."""
+    """What the columns of a summary are, in a line."""
     counts = {entry["extremes"]["inputs"] for entry in tables.every(data) if entry["extremes"]}
     inputs = " or ".join(text.count(n) for n in sorted(counts)) or "no"
     targets = ", ".join(f"`{target}`" for target in data["targets"]) or "Targets"
-    return LEGEND.format(inputs=inputs, targets=targets, reference=data["reference"])
+    return " ".join(LEGEND.split()).format(inputs=inputs, targets=targets, reference=data["reference"])
 
 
 def machine(data: Mapping[str, Any]) -> str:

@@ -17,7 +17,6 @@ LEFT, RIGHT, TOP, BOTTOM = 48, 8, 34, 44  # of a panel, outside its frame
 CHARACTER, LINE = 6.9, 13  # of a label, as wide as capitals of 11 pixels in the widest of usual sans-serif fonts
 RADIUS = 7  # of a mark, with its ring
 THICK = 1.5  # half the width of the front's line, with room
-FLOOR = 1e-9  # below it errors are drawn as this
 HEADROOM = 0.6  # decades above the largest error and below the smallest
 
 
@@ -116,8 +115,9 @@ def _panel(
         return frame.left + (cost - low) / (high - low) * (frame.right - frame.left)
 
     def y(wrong: float) -> float:
-        exponent = math.log10(max(wrong, FLOOR)) if wrong < math.inf else decades[1]
-        share = (exponent - decades[0]) / (decades[1] - decades[0])
+        if wrong in (0, math.inf):  # on the frame
+            return frame.bottom if wrong == 0 else frame.top
+        share = (math.log10(wrong) - decades[0]) / (decades[1] - decades[0])
         return frame.bottom - share * (frame.bottom - frame.top)
 
     corners = [(x(point.cost), y(point.error)) for point in pareto.front(points)]
@@ -208,7 +208,7 @@ def _tip(point: Point, entry: Mapping[str, Any], by: str | None) -> str:
 
 def _decades(errors: Sequence[float]) -> tuple[float, float]:
     """Exponents of ten around all errors that are finite and not 0."""
-    exponents = [math.log10(max(wrong, FLOOR)) for wrong in errors if wrong < math.inf] or [0.0]
+    exponents = [math.log10(wrong) for wrong in errors if 0 < wrong < math.inf] or [0.0]
     return min(exponents) - HEADROOM, max(exponents) + HEADROOM
 
 

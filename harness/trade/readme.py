@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import re
-import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from ..errors import HarnessError
-from . import answers, markdown, tables
+from . import answers, markdown, tables, text
 
 BEGIN = "<!-- the trade: written by `make trade-readme` from docs/trade.json -->"
 END = "<!-- end of the trade -->"
-#: of the README's own lines
-WIDTH = 124
 
 INTRODUCTION = """\
 What each preset of the shading model costs and how wrong it is, measured by `make trade`: it writes `build/trade/`, a \
@@ -31,25 +27,25 @@ def block(data: Mapping[str, Any]) -> str:
     ]
     parts = [
         BEGIN,
-        _wrapped(INTRODUCTION),
-        _wrapped(f"By its rules: {', '.join(named)}; it says why, and what one gives up."),
+        text.wrapped(INTRODUCTION),
+        text.wrapped(f"By its rules: {', '.join(named)}; it says why, and what one gives up."),
         markdown.table(tables.summary(data, data["presets"])),
-        _wrapped(markdown.legend(data)),
-        _wrapped(f"Measured on {markdown.machine(data)}; ns on {_clocks(data)}."),
+        text.wrapped(markdown.legend(data)),
+        text.wrapped(f"Measured on {markdown.machine(data)}; ns on {_clocks(data)}."),
         END,
     ]
     return "\n\n".join(parts)
 
 
-def updated(text: str, data: Mapping[str, Any], path: Path) -> str:
+def updated(old: str, data: Mapping[str, Any], path: Path) -> str:
     """The README's text with the block of this trade in place of the one that is there. HarnessError without marks."""
-    start, end = place(text, path)
-    return text[:start] + block(data) + text[end:]
+    start, end = place(old, path)
+    return old[:start] + block(data) + old[end:]
 
 
-def place(text: str, path: Path) -> tuple[int, int]:
+def place(old: str, path: Path) -> tuple[int, int]:
     """Where the block begins and ends in the text of the README at ``path``. HarnessError without marks."""
-    start, end = text.find(BEGIN), text.find(END)
+    start, end = old.find(BEGIN), old.find(END)
     if start < 0 or end < start:
         raise HarnessError(f"has no place for the table; put these two lines where it shall be:\n{BEGIN}\n{END}", path)
     return start, end + len(END)
@@ -58,9 +54,3 @@ def place(text: str, path: Path) -> tuple[int, int]:
 def _clocks(data: Mapping[str, Any]) -> str:
     devices = [f"{device} ({backend})" for backend, device in tables.timed_by(data["presets"])]
     return ", ".join(devices) or "nothing: no time was taken"
-
-
-def _wrapped(text: str) -> str:
-    """Filled lines, none broken within `code`."""
-    held = re.sub(r"`[^`]*`", lambda code: code[0].replace(" ", "\0"), " ".join(text.split()))
-    return textwrap.fill(held, WIDTH, break_long_words=False, break_on_hyphens=False).replace("\0", " ")

@@ -32,7 +32,7 @@ def summary(data: Mapping[str, Any], entries: Sequence[Entry]) -> Table:
         "half breaks",
         *data["targets"],
         "SPIR-V",
-        *(f"ns, {short(device)}" for _, device in devices),
+        *(f"ns, {text.short(device)}" for _, device in devices),
         "scene /255",
         "ꟻLIP",
     ]
@@ -150,20 +150,14 @@ def timed(entry: Entry, device: tuple[str, str]) -> Mapping[str, Any] | None:
     return next((t for t in entry["time"] or () if (t["backend"], t["device"]) == device), None)
 
 
-def short(device: str) -> str:
-    """A device's name without what is in brackets after it."""
-    return device.partition(" (")[0]
-
-
 def where(spread: Mapping[str, Any] | None) -> str:
-    """The inputs at which an error is largest: NoL 0.25, alpha 0.01."""
-    at = (spread or {}).get("at")
-    if not isinstance(at, Mapping):
+    """The inputs at which an error is largest: NoL 0.25, alpha 0.01; nowhere where there is none."""
+    if not spread or not spread["max"]:
         return text.NONE
-    return ", ".join(f"{name} {_value(value)}" for name, value in at.items()) or text.NONE
+    return ", ".join(f"{name} {_value(value)}" for name, value in spread["at"].items())
 
 
 def _value(value: Any) -> str:
     if isinstance(value, list | tuple):
         return f"({', '.join(_value(part) for part in value)})"
-    return text.number(value) if isinstance(value, int | float) else str(value)
+    return text.number(value)

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+import re
+import textwrap
 from collections.abc import Mapping
 from typing import Any
 
+#: of a line of Markdown
+WIDTH = 120
 #: stands for what was not measured
 NONE = "–"
 
@@ -29,8 +33,8 @@ def plain(value: float | None, digits: int = 3) -> str:
 
 
 def count(value: float | None) -> str:
-    """A whole number with its thousands apart: 1 048 576."""
-    return NONE if value is None else f"{value:,.0f}".replace(",", " ")
+    """A whole number with its thousands apart, by spaces that no line is broken at: 1 048 576."""
+    return NONE if value is None else f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}")
 
 
 def percent(share: float | None) -> str:
@@ -48,3 +52,14 @@ def share_broken(broken: int | None, inputs: int) -> str:
     if broken is None:
         return NONE
     return f"{count(broken)} ({percent(broken / inputs)})" if broken > inputs / 1000 else count(broken)
+
+
+def short(device: str) -> str:
+    """A device's name without what is in brackets after it."""
+    return device.partition(" (")[0]
+
+
+def wrapped(paragraph: str) -> str:
+    """Filled lines of at most WIDTH, none broken within `code`."""
+    held = re.sub(r"`[^`]*`", lambda code: code[0].replace(" ", "\0"), re.sub("[ \\n]+", " ", paragraph.strip()))
+    return textwrap.fill(held, WIDTH, break_long_words=False, break_on_hyphens=False).replace("\0", " ")

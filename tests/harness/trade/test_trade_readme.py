@@ -8,7 +8,7 @@ import pytest
 import trade_data
 
 from harness import HarnessError
-from harness.trade import readme
+from harness.trade import readme, text
 
 README = Path("README.md")
 
@@ -20,8 +20,8 @@ def data():
 
 def test_all_but_the_block_stays_as_it_is(data):
     before, after = "# Title\r\n\nText | with\n\n", "\n\nmore\n"
-    text = readme.updated(f"{before}{readme.BEGIN}\nold\n{readme.END}{after}", data, README)
-    assert text == before + readme.block(data) + after
+    made = readme.updated(f"{before}{readme.BEGIN}\nold\n{readme.END}{after}", data, README)
+    assert made == before + readme.block(data) + after
 
 
 def test_written_again_it_is_the_same(data):
@@ -29,10 +29,10 @@ def test_written_again_it_is_the_same(data):
     assert readme.updated(once, data, README) == once
 
 
-@pytest.mark.parametrize("text", ["", readme.BEGIN, readme.END, readme.END + readme.BEGIN])
-def test_without_marks_it_is_refused_with_what_to_put(data, text):
+@pytest.mark.parametrize("old", ["", readme.BEGIN, readme.END, readme.END + readme.BEGIN])
+def test_without_marks_it_is_refused_with_what_to_put(data, old):
     with pytest.raises(HarnessError, match="README.md: has no place for the table") as caught:
-        readme.updated(text, data, README)
+        readme.updated(old, data, README)
     assert readme.BEGIN in str(caught.value) and readme.END in str(caught.value)
 
 
@@ -48,6 +48,6 @@ def test_no_code_is_broken_over_two_lines(data):
     assert all(line.count("`") % 2 == 0 for line in readme.block(data).splitlines() if not line.startswith("<!--"))
 
 
-def test_its_lines_are_as_long_as_the_readmes(data):
-    text = [line for line in readme.block(data).splitlines() if not line.startswith("|")]
-    assert max(map(len, text)) <= readme.WIDTH
+def test_its_lines_are_not_too_long(data):
+    lines = [line for line in readme.block(data).splitlines() if not line.startswith("|")]
+    assert max(map(len, lines)) <= text.WIDTH

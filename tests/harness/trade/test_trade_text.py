@@ -40,7 +40,7 @@ def test_a_number_reads_back_to_two_digits(value):
 
 
 def test_a_count_has_its_thousands_apart():
-    assert [text.count(n) for n in (0, 999, 1000, 1048576, None)] == ["0", "999", "1 000", "1 048 576", "–"]
+    assert [text.count(n) for n in (0, 999, 1000, 1048576, None)] == ["0", "999", "1\xa0000", "1\xa0048\xa0576", "–"]
 
 
 @pytest.mark.parametrize(
@@ -52,3 +52,9 @@ def test_a_share_is_in_percent(share, words):
 
 def test_a_time_has_its_spread():
     assert text.time({"ns": 0.85, "low": 0.77, "high": 1.0234}) == "0.85 (0.77–1.02)"
+
+
+def test_a_filled_line_breaks_neither_code_nor_a_number():
+    words = "a" * (text.WIDTH - 4)
+    assert text.wrapped(f"{words}\n`b c` d") == f"{words}\n`b c` d"
+    assert text.wrapped(f"{words} {text.count(10000)}") == f"{words}\n10\xa0000"
