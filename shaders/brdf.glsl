@@ -3,37 +3,11 @@
 // Notation of the field: l points to the light, v to the viewer, n is the normal, h = (l + v)/|l + v| the half vector,
 // all unit; NoL is n.l clamped to 0...1, and so on; alpha = roughness^2. Colours are linear.
 //
-// Each term with a real trade has rungs, chosen by a macro of the pass: the first of each pair is the exercise's own.
+// Each term with a real trade has rungs, chosen by a macro of the pass: ladder.glsl lists them.
 #ifndef BRDF_GLSL
 #define BRDF_GLSL
 
-// BRDF_D, how the distribution finds the angle between n and h.
-#define D_EXERCISE 0 // from n.h: as written, loses all digits below roughness 0.1
-#define D_CROSS 1    // from |n x H|: exact to the rounding of the vectors at every roughness
-#ifndef BRDF_D
-#define BRDF_D D_CROSS
-#endif
-
-// BRDF_V, the visibility G / (4 NoL NoV).
-#define V_EXACT 0  // height-correlated Smith
-#define V_HAMMON 1 // Hammon 2017: no square roots, up to 28 % off
-#ifndef BRDF_V
-#define BRDF_V V_EXACT
-#endif
-
-// BRDF_F, how Schlick's fifth power is computed.
-#define F_POW 0      // pow(x, 5)
-#define F_MULTIPLY 1 // x^2 x^2 x: more accurate and cheaper
-#ifndef BRDF_F
-#define BRDF_F F_MULTIPLY
-#endif
-
-// BRDF_DIFFUSE, the share of the light that is left for diffuse scattering.
-#define DIFFUSE_FRESNEL 0 // 1 - F(h.l)
-#define DIFFUSE_LAMBERT 1 // all of it
-#ifndef BRDF_DIFFUSE
-#define BRDF_DIFFUSE DIFFUSE_FRESNEL
-#endif
+#include "ladder.glsl"
 
 const float PI = 3.14159265358979;
 const float DIELECTRIC_F0 = 0.04; // reflectance at normal incidence of a refractive index of 1.5
@@ -73,6 +47,9 @@ float schlick_weight(float LoH)
     float x = clamp(1.0 - LoH, 0.0, 1.0);
 #if BRDF_F == F_POW
     return pow(x, 5.0);
+#elif BRDF_F == F_GAUSSIAN
+    float c = 1.0 - x; // a spherical Gaussian in place of the power [Lagarde 2012; Karis 2013, eq. 5]
+    return exp2((-5.55473 * c - 6.98316) * c);
 #else
     float x2 = x * x;
     return x2 * x2 * x;
@@ -83,13 +60,6 @@ float schlick_weight(float LoH)
 vec3 F_Schlick(vec3 F0, float LoH)
 {
     return F0 + (1.0 - F0) * schlick_weight(LoH);
-}
-
-// Hammon's V [Hammon 2017, "PBR Diffuse Lighting for GGX+Smith Microsurfaces", GDC, p. 84]: the square roots of
-// V_SmithGGXCorrelated replaced by linear interpolation in alpha; exact at alpha 0 and 1.
-float V_Hammon(float NoL, float NoV, float alpha)
-{
-    return 0.5 / max(mix(2.0 * NoL * NoV, NoL + NoV, alpha), TINY);
 }
 
 // The model as the exercise writes it, term by term. Right in the middle of the range. Below roughness 0.1 the rounding of
@@ -108,6 +78,8 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
     vec3 diffuse = (1.0 - F) * (1.0 - m.metalness) * m.albedo / PI;
     return (diffuse + specular) * NoL;
 }
+
+#include "rungs.glsl" // the terms in other forms: visibility(), lambert_share() and others below
 
 // ---- The same model, for every input ---------------------------------------------------------------------------------
 
@@ -138,45 +110,79 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 
     vec3 H = l + v;
     float NoHH = NoL + NoV; // n.H where it matters: with both cosines positive
+#if BRDF_D == D_CROSS || BRDF_D == D_PROJECT
+#if BRDF_D == D_PROJECT
+    vec3 nxH = H - n * NoHH; // as long as n x H, where n is unit
+#else
     vec3 nxH = cross(n, H);
+#endif
     // |H|^2 times the squared sine and cosine of the angle between n and h. Where H is 0, 1e-37 makes 0/0 a number.
     float sin2 = nxH.x * nxH.x + (nxH.y * nxH.y + (nxH.z * nxH.z + 1e-37));
     float cos2 = NoHH * NoHH;
     float HH = sin2 + cos2;
-
-#if BRDF_D == D_EXERCISE
-    float NoH = NoHH * inversesqrt(HH);
-    float k = alpha / max(1.0 + NoH * NoH * (alpha2 - 1.0), alpha2);
-#else
     float k = alpha * HH / (sin2 + alpha2 * cos2);
-#endif
-#if BRDF_V == V_HAMMON
-    float V = 0.5 / (mix(2.0 * NoL * NoV, NoL + NoV, alpha) + 1e-37);
 #else
+    float HH = dot(H, H) + 1e-37;
+    float k = distribution_root(n, H, NoHH, alpha);
+#endif
+
+#if BRDF_V == V_EXACT
     float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
     float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
     float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
+#else
+    float V = visibility(NoL, NoV, 0.5 * sqrt(HH), alpha);
 #endif
+#if BRDF_D == D_HALF
+    float S = min(k * k / PI, 65504.0) * (V * lit * PI);
+#elif BRDF_V == V_KELEMEN
+    float S = min(k * k * (V * lit), 1e37); // at the horizons its V has no end that the peak of D could meet
+#else
     float S = k * k * (V * lit);
+#endif
 
     float c = 0.5 * sqrt(HH);
-    float x = clamp(1.0 - c, 0.0, 1.0);
-    float x2 = x * x;
-    float x4 = x2 * x2;
-    float left2 = c * x + c;          // 1 - x^2
-    float left4 = left2 * x2 + left2; // 1 - x^4
-    float W = x4 * c + left4;         // 1 - x^5
-
-    float dielectric = 1.0 - m.metalness;
-    float f = DIELECTRIC_F0 * (dielectric * W);
-    float A = m.metalness * W;
-    float B = schlick_weight(c) + f;
-    float E = dielectric * lit;
-#if BRDF_DIFFUSE == DIFFUSE_LAMBERT
-    return m.albedo * (S * A + E) + S * B;
+    float w = schlick_weight(c);
+#if BRDF_F == F_GAUSSIAN
+    float W = 1.0 - w;
 #else
+    float W = fifth_rest(c); // 1 - w
+#endif
+    float dielectric = 1.0 - m.metalness;
+    float A = m.metalness * W;
+#if BRDF_F == F_DIELECTRIC
+    vec2 exact = fresnel_dielectric(c);
+    float B = m.metalness * w + dielectric * exact.x;
+    float Z = A + dielectric * exact.y;
+#else
+    float f = DIELECTRIC_F0 * (dielectric * W);
+    float B = w + f;
     float Z = W - f;
+#endif
+    float E = dielectric * lit;
+
+    // The same for each of the rungs: S F + E times what is scattered. Three colours take part only where they must.
+#if BRDF_MULTI == MULTI_FITTED || BRDF_F == F_F82 || BRDF_DIFFUSE == DIFFUSE_EON
+    vec3 F = A * m.albedo + B;
+    vec3 left = Z - A * m.albedo; // 1 - F
+#if BRDF_F == F_F82
+    vec3 drop = m.metalness * f82_drop(m.albedo, c);
+    F = max(F - drop, 0.0);
+    left = min(left + drop, 1.0);
+#endif
+#if BRDF_DIFFUSE == DIFFUSE_FRESNEL
+    vec3 scattered = m.albedo * left;
+#elif BRDF_DIFFUSE == DIFFUSE_EON
+    vec3 scattered = diffuse_eon(m.albedo, m.roughness, NoL, NoV, dot(l, v));
+#else
+    vec3 scattered = m.albedo * lambert_share(NoL, NoV, c, m.roughness);
+#endif
+    vec3 F0 = dielectric * DIELECTRIC_F0 + m.metalness * m.albedo;
+    return S * F * compensation(F0, NoV, m.roughness) + E * scattered;
+#elif BRDF_DIFFUSE == DIFFUSE_FRESNEL
     return m.albedo * (S * A + E * Z - E * A * m.albedo) + S * B;
+#else
+    return m.albedo * (S * A + E * lambert_share(NoL, NoV, c, m.roughness)) + S * B;
 #endif
 }
 

@@ -9,6 +9,7 @@
 #define SRGB_POWER 0     // c^2.2, the exercise's: 0.0085
 #define SRGB_PIECEWISE 1 // the curve of IEC 61966-2-1: 0
 #define SRGB_CUBIC 2     // a polynomial without pow: 0.0017
+#define SRGB_SQUARE 3    // c^2: 0.042
 #ifndef SRGB_DECODE
 #define SRGB_DECODE SRGB_POWER
 #endif
@@ -31,6 +32,8 @@ vec3 srgb_to_linear(vec3 c)
     return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
 #elif SRGB_DECODE == SRGB_CUBIC
     return c * (c * (c * 0.305306011 + 0.682171111) + 0.012522878);
+#elif SRGB_DECODE == SRGB_SQUARE
+    return c * c;
 #else
     return pow(c, vec3(2.2));
 #endif
