@@ -73,10 +73,8 @@ def _truth(data: Mapping[str, Any]) -> Answer:
     if lawful:
         chosen = min(lawful, key=figures.rounding)
         returned = text.plain(chosen["energy"]["furnace_max"], 4)
-        law = (
-            f"makes no light, to {text.percent(FURNACE)}: a white furnace gets back at most {returned} of what it gave"
-        )
-        why = f"the most accurate {rule} and {law}"
+        law = f"to {text.percent(FURNACE)}: a white furnace gets back at most {returned} of what it gave"
+        why = f"the most accurate {rule} and makes no light, {law}"
     else:
         chosen = min(kept, key=figures.error)
         why = f"the most accurate {rule}; all of them make light"
@@ -131,10 +129,8 @@ def _speed(data: Mapping[str, Any], preset: Entry) -> str | None:
 def _slower(preset: Entry, cheapest: Entry) -> str:
     """The same by the clock, on each device that timed both."""
     clocks = {(t["backend"], t["device"]): t["ns"] for t in cheapest["time"] or ()}
-    both = [(t["device"], t["ns"], clocks.get((t["backend"], t["device"]))) for t in preset["time"] or ()]
-    told = [
-        f"{text.plain(ns)} ns for {text.plain(least)} on {text.short(device)}" for device, ns, least in both if least
-    ]
+    both = [(text.short(t["device"]), t["ns"], clocks.get((t["backend"], t["device"]))) for t in preset["time"] or ()]
+    told = [f"{text.plain(ns)} ns for {text.plain(least)} on {device}" for device, ns, least in both if least]
     return f" ({'; '.join(told)})" if told else ""
 
 

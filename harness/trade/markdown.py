@@ -66,7 +66,8 @@ def legend(data: Mapping[str, Any]) -> str:
 
 def machine(data: Mapping[str, Any]) -> str:
     """What measured, in a line."""
-    return ", ".join(f"{name} {value}" for name, value in data["machine"].items() if value)
+    words = {"cpu": "", "driver": "", "glslang": "glslang ", "harness": "harness ", "costs": "costs by "}
+    return ", ".join(f"{words.get(name, '')}{value}" for name, value in data["machine"].items() if value)
 
 
 def dominated(data: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]) -> list[str]:

@@ -119,7 +119,13 @@ def trade() -> dict[str, Any]:
     return copy.deepcopy(
         {
             "schema": 1,
-            "machine": {"cpu": "Some CPU", "driver": "Mesa 22.3.6", "glslang": "12.0.0", "harness": "0.1.0"},
+            "machine": {
+                "cpu": "Some CPU",
+                "driver": "Mesa 22.3.6",
+                "glslang": "12.0.0",
+                "harness": "0.1.0",
+                "costs": "Mesa 22.3.6",
+            },
             "targets": list(TARGETS),
             "reference": "exact",
             "scene": {"project": "project.sprj", "size": [64, 36]},
