@@ -94,7 +94,7 @@ def _evidence(
         for region in part.regions:
             regions.box(region.pass_name)  # before the tests, which take longer
     costs = evidence.costs(parts, path.parent)
-    trade = evidence.trade(read)
+    trade = evidence.trade(read, progress)
     results = None
     if tests:
         progress(f"running the tests in {', '.join(parts.tests)}")

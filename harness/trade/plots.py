@@ -15,6 +15,7 @@ WIDTH, HEIGHT = 290, 270  # of a panel with all that belongs to it
 COLUMNS = 4
 LEFT, RIGHT, TOP, BOTTOM = 48, 8, 34, 44  # of a panel, outside its frame
 CHARACTER, LINE = 6.9, 13  # of a label, as wide as capitals of 11 pixels in the widest of usual sans-serif fonts
+GAP = 5  # between two labels beside each other
 RADIUS = 7  # of a mark, with its ring
 THICK = 1.5  # half the width of the front's line, with room
 HEADROOM = 0.6  # decades above the largest error and below the smallest
@@ -168,7 +169,7 @@ def place(
     for (x, y), (to_x, to_y) in zip(line, line[1:], strict=False):
         taken.append(Box(min(x, to_x) - THICK, min(y, to_y) - THICK, max(x, to_x) + THICK, max(y, to_y) + THICK))
     for (x, y), label in zip(places, labels, strict=True):
-        width = len(label) * CHARACTER
+        width = len(label) * CHARACTER + GAP
         around = [Box(left, top, left + width, top + LINE) for left, top in _around(x, y, width)]
         taken.append(min(around, key=lambda box: box.outside(frame) + sum(box.overlap(other) for other in taken)))
     return taken[len(taken) - len(places) :]
