@@ -60,9 +60,6 @@ class Choice:
         """Of the arguments of ``whole``."""
         return sampling.SHADE if self.whole == WHOLE else self.domain
 
-    def __getstate__(self):
-        return self.__dict__ | {"_loaded": {}}  # another process compiles for itself
-
     def described(self) -> dict[str, Any]:
         """What the data says of it before anything is measured."""
         rung = self.entry if isinstance(self.entry, Rung) else None

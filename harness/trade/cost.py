@@ -7,7 +7,7 @@ from typing import Any
 
 from .. import isa, spirv_cost
 from ..chips import TARGETS
-from ..errors import HarnessError
+from ..errors import CallError
 from ..function import Function
 
 
@@ -42,8 +42,8 @@ def counted(function: Function) -> dict[str, Any]:
 
 
 def driver(function: Function) -> str | None:
-    """The driver that tells costs, such as "Mesa 22.3.6"; None where there is none."""
+    """The driver that tells costs, such as "Mesa 22.3.6"; None where there is none, or the function has no cost."""
     try:
-        return isa.cost(function, TARGETS[0]).driver
-    except HarnessError:
+        return isa.cost(function, targets()[0]).driver if targets() else None
+    except CallError:
         return None

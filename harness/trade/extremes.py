@@ -36,8 +36,8 @@ _ROUGHNESS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 0.045, 0.089)
 _DENORMAL = 2.0**-149
 
 
-def inputs(count: int = COUNT) -> dict[str, np.ndarray]:
-    """The set, or a smaller one of the same kinds: float32 inputs of ``shade``, as ``values.values`` takes them."""
+def inputs(count: int) -> dict[str, np.ndarray]:
+    """The set, of COUNT, or a smaller one of the same kinds: float32, for ``values.values`` of ``shade``."""
     random = np.random.default_rng(SEED)
     kind = np.arange(count) % 8
     l, v = (np.empty((count, 3)) for _ in range(2))  # noqa: E741
@@ -49,8 +49,6 @@ def inputs(count: int = COUNT) -> dict[str, np.ndarray]:
     turn = sampling.rotations(len(turned), random)
     for vectors in (l, v, n):
         vectors[turned] = np.einsum("nij,nj->ni", turn, vectors[turned])
-    opposite = kind == 2
-    v[opposite] = -l[opposite]
     grey = random.random((count, 1)) < 0.5
     albedo = _shares((count, 3), random)
     made = {

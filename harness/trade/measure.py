@@ -148,4 +148,4 @@ def _times(chosen: Sequence[Choice], found: Sequence[Found], steps: _Steps) -> N
                 own.parts["time"].append({"backend": backend, "device": device, **told})
     for own, _ in timed:
         if not own.parts["time"]:
-            own.lack("time", next(iter(own.missing.values())))
+            own.lack("time", own.missing.pop(f"time.{measured[0][0][0]}"))

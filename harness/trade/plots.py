@@ -36,10 +36,6 @@ class Box:
         height = min(self.bottom, other.bottom) - max(self.top, other.top)
         return width * height if width > 0 and height > 0 else 0.0
 
-    def outside(self, frame: Box) -> float:
-        """The area that is not within the frame."""
-        return (self.right - self.left) * (self.bottom - self.top) - self.overlap(frame)
-
 
 @dataclass(frozen=True)
 class Mark:
@@ -170,21 +166,27 @@ def place(
         taken.append(Box(min(x, to_x) - THICK, min(y, to_y) - THICK, max(x, to_x) + THICK, max(y, to_y) + THICK))
     for (x, y), label in zip(places, labels, strict=True):
         width = len(label) * CHARACTER + GAP
-        around = [Box(left, top, left + width, top + LINE) for left, top in _around(x, y, width)]
-        taken.append(min(around, key=lambda box: box.outside(frame) + sum(box.overlap(other) for other in taken)))
+        around = [_within(frame, left, top, width) for left, top in _around(x, y, width)]
+        taken.append(min(around, key=lambda box: sum(box.overlap(other) for other in taken)))
     return taken[len(taken) - len(places) :]
+
+
+def _within(frame: Box, left: float, top: float, width: float) -> Box:
+    """A label's box, moved into the frame where it is outside."""
+    left = max(min(left, frame.right - width), frame.left)
+    top = max(min(top, frame.bottom - LINE), frame.top)
+    return Box(left, top, left + width, top + LINE)
 
 
 def _around(x: float, y: float, width: float) -> list[tuple[float, float]]:
     """Left and top of boxes around a mark, the nearest first: right, left, above and below, then farther out."""
     middle, gap = y - LINE / 2, RADIUS + 1
     found = [(x + gap, middle), (x - gap - width, middle), (x - width / 2, y - gap - LINE), (x - width / 2, y + gap)]
-    for ring in range(1, 12):
+    for ring in range(1, 16):
         shift = ring * 7
         for up in (-1, 1):
             top = middle + up * (shift + 4)
             found += [(x + gap, top), (x - gap - width, top), (x - width / 2, top)]
-        found += [(x + gap + shift, middle), (x - gap - width - shift, middle)]
     return found
 
 

@@ -18,9 +18,7 @@ def errors(got: np.ndarray, want: np.ndarray, precision: str = "float32") -> np.
     format holds digits. inf where one of the two alone is a number, 0 where neither is.
     """
     scale = np.maximum(np.abs(want), PRECISIONS[precision].smallest_normal)
-    with np.errstate(invalid="ignore"):
-        off = distance(got, want) / scale
-    return np.where(np.isnan(off), np.inf, off).max(axis=1)  # inf / inf: one of them alone is infinite
+    return (distance(got, want) / np.where(np.isfinite(want), scale, 1)).max(axis=1)
 
 
 def summary(errors: np.ndarray, flat: Flat) -> dict[str, Any]:

@@ -36,7 +36,7 @@ _COSINES = {"NoL": "nl", "NoV": "nv", "NoH": "nh", "LoH": "lh", "VoH": "vh", "Lo
 _WIDE = 1e6
 
 
-def inputs(function: Function, domain: Mapping[str, Any], count: int = COUNT) -> dict[str, np.ndarray]:
+def inputs(function: Function, domain: Mapping[str, Any], count: int) -> dict[str, np.ndarray]:
     """``count`` inputs of a function from a domain (harness/domain.py), always the same: parts by dotted names,
     (count, *shape), floats as float64. DomainError when the domain does not fit the function."""
     where = Domain.of(function, domain)

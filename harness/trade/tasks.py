@@ -13,7 +13,7 @@ import numpy as np
 from .. import domain, jobs
 from ..errors import HarnessError
 from ..function import Function
-from . import energy, extremes, model, roundoff, sampling, scene
+from . import energy, extremes, model, roundoff, sampling, scene, timing
 from .choices import WHOLE, Choice
 
 #: modes that the extremes are tried in
@@ -66,7 +66,7 @@ class Errors:
         """Measures it."""
         found, choice = Found(), self.choice
         function = choice.function(choice.own)
-        flat = sampling.inputs(function, choice.domain)
+        flat = sampling.inputs(function, choice.domain, sampling.COUNT)
         found.measure_each("roundoff", roundoff.MODES, lambda mode: roundoff.roundoff(function, flat, mode))
         found.measure("model", lambda: model.model(function, choice.function(choice.own, choice.exact), flat))
         return found
@@ -115,7 +115,7 @@ class Picture:
 
         def seen() -> dict[str, Any]:
             reference = _picture(self.project_path, tuple(choice.reference.items()))
-            return asdict(scene.difference(scene.picture(self.project_path, choice.scene), reference))
+            return asdict(scene.difference(scene.picture(self.project_path, choice.scene, scene.SIZE), reference))
 
         found.measure("scene", seen)
         if found.parts["scene"] and (reason := scene.flip_unavailable()):
@@ -130,7 +130,7 @@ def tasks(project_path: str, chosen: Sequence[Choice]) -> list[tuple[Task, list[
     """The work for choices, and to which of them each piece belongs: what compiles to the same text is done once."""
     found: dict[tuple, tuple[Task, list[int]]] = {}
     for k, choice in enumerate(chosen):
-        text = choice.function(choice.whole)._library.source.text
+        text = timing.without_blank_lines(choice.function(choice.whole)._library.source.text)
         for key, task in (
             (("sound", text, choice.whole), Soundness(choice)),
             (("errors", k), Errors(choice)),
@@ -156,7 +156,7 @@ def _run(task: Task) -> Found:
 
 @cache
 def _extremes() -> Mapping[str, np.ndarray]:
-    return extremes.inputs()
+    return extremes.inputs(extremes.COUNT)
 
 
 def _extremes_of(function: Function, words: Mapping[str, Any]) -> Mapping[str, np.ndarray]:
@@ -166,4 +166,4 @@ def _extremes_of(function: Function, words: Mapping[str, Any]) -> Mapping[str, n
 
 @cache
 def _picture(project_path: str, macros: tuple[tuple[str, str], ...]) -> np.ndarray:
-    return scene.picture(project_path, dict(macros))
+    return scene.picture(project_path, dict(macros), scene.SIZE)

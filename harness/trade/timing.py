@@ -33,8 +33,10 @@ ROUNDS = 15
 #: the loop is made so long that the first job takes this at least
 SECONDS = 0.008
 LOOPS = 4, 1 << 12  # evaluations of an invocation, at least and at most: llvmpipe stops loops after 65 535 passes
-#: of the times of a loop and of one half as long: less than that, and evaluations were left out
+#: of the shortest of so many times of a loop and of one half as long: less, and evaluations were left out
 GROWTH = 1.3
+PAIRS = 6
+ATTEMPTS = 4
 #: a step of a Weyl sequence: the fractions of the square roots of primes are as irrational as it gets
 _PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53)
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast")
@@ -61,7 +63,8 @@ class Job:
 
 @dataclass(frozen=True)
 class Time:
-    """Nanoseconds an evaluation takes: the median of the rounds, and the quartiles; ``ratio`` to the reference's.
+    """Nanoseconds an evaluation takes: the median of the rounds, and the quartiles; ``ratio`` to the reference's,
+    None where that is no more than the null loop's.
 
     The median of the null loop is taken from each. ``reason``: why they mean nothing, where the time did not grow with
     the count of evaluations.
@@ -70,7 +73,7 @@ class Time:
     ns: float
     low: float
     high: float
-    ratio: float
+    ratio: float | None
     reason: str | None = None
 
 
@@ -146,7 +149,13 @@ def _text(function: Function, numbers: int, body: list[str]) -> str:
         "hn_out0[hn_i] = hn_sum;",
         "}",
     ]  # fmt: skip
-    return dialect.complete(source, rest, dialect.dialect(source, "as-written"), compute=True)
+    text = dialect.complete(source, rest, dialect.dialect(source, "as-written"), compute=True)
+    return without_blank_lines(text)  # of two that are one the time is one
+
+
+def without_blank_lines(text: str) -> str:
+    """The text, such that macros that change nothing change nothing of it."""
+    return "".join(line for line in text.splitlines(keepends=True) if line.strip())
 
 
 # ---- Running ---------------------------------------------------------------------------------------------------------
@@ -156,12 +165,14 @@ class _Stage:
     """A compiled stage."""
 
     def __init__(self, text: str):
+        native.open_context()
         self._program = native.Program.compute(text)
         self._out = np.empty((INVOCATIONS, 1), np.float32)
 
     def run(self, loops: int) -> float:
         """Seconds that it takes."""
-        self._program.set_uniform("hn_loops", gl_enums.GL_INT, np.array([loops], np.int32))
+        if "hn_loops" in self._program.uniforms:  # not where all results are one constant
+            self._program.set_uniform("hn_loops", gl_enums.GL_INT, np.array([loops], np.int32))
         start = time.perf_counter()
         self._program.evaluate({}, [self._out], INVOCATIONS)
         return time.perf_counter() - start
@@ -189,7 +200,7 @@ def times(jobs: Sequence[Job], progress: Callable[[int, int], None] = lambda don
         raise NativeError(f"{device()[1]} has no compute stage")
     stages = {text: _Stage(text) for text in dict.fromkeys(t for j in jobs for t in (j.text, j.null))}
     loops = _enough(stages[jobs[0].text])
-    halves = {text: min(stage.run(loops // 2) for _ in range(2)) for text, stage in stages.items()}
+    grown = {text: _grows(stage, loops) for text, stage in stages.items()}
     samples: dict[str, list[float]] = {text: [] for text in stages}
     for k in range(ROUNDS):
         progress(k, ROUNDS)
@@ -198,15 +209,25 @@ def times(jobs: Sequence[Job], progress: Callable[[int, int], None] = lambda don
     per_evaluation = 1e9 / (INVOCATIONS * loops)
     own = [(np.array(samples[j.text]) - np.median(samples[j.null])) * per_evaluation for j in jobs]
     medians = [float(np.median(values)) for values in own]
-    grown = [np.median(samples[j.text]) >= GROWTH * halves[j.text] for j in jobs]
-    return [_time(*each, medians) for each in zip(jobs, own, grown, strict=True)]
+    return [_time(j, values, grown[j.text], medians) for j, values in zip(jobs, own, strict=True)]
 
 
 def _time(job: Job, values: np.ndarray, grown: bool, medians: Sequence[float]) -> Time:
     low, median, high = (float(q) for q in np.quantile(values, (0.25, 0.5, 0.75)))
     reference = medians[job.reference]
     reason = None if grown else "twice as many evaluations do not take longer: they were left out"
-    return Time(median, low, high, median / reference if reference > 0 else float("nan"), reason)
+    return Time(median, low, high, median / reference if reference > 0 else None, reason)
+
+
+def _grows(stage: _Stage, loops: int) -> bool:
+    """Whether more evaluations take longer: a compiler that sees no use in some leaves them out."""
+    stage.run(loops)  # the driver compiles at the first
+    for _ in range(ATTEMPTS):
+        pairs = [(stage.run(loops), stage.run(loops // 2)) for _ in range(PAIRS)]
+        long, short = map(min, zip(*pairs, strict=True))  # what a busy machine adds is seldom in the shortest
+        if long >= GROWTH * short:
+            return True
+    return False
 
 
 def _enough(stage: _Stage) -> int:

@@ -41,7 +41,7 @@ def test_the_models_errors_are_those_of_the_presets(data, chosen):
     """In double, by our own interpreter: another processor's numpy may differ by some ulp in a power, hence 1e-6."""
     for choice, told in presets(data, chosen):
         function = choice.function(choice.own)
-        flat = sampling.inputs(function, choice.domain)
+        flat = sampling.inputs(function, choice.domain, sampling.COUNT)
         found = model.model(function, choice.function(choice.own, choice.exact), flat)
         for part in ("median", "p99", "max"):
             assert found[part] == pytest.approx(told["model"][part], rel=1e-6, abs=1e-12), (choice.name, part)
@@ -49,7 +49,7 @@ def test_the_models_errors_are_those_of_the_presets(data, chosen):
 
 def test_the_extremes_are_those_of_the_presets(data, chosen):
     """In single precision, every operation as it is written, which is the same on every driver that keeps to IEEE."""
-    flat = extremes.inputs()
+    flat = extremes.inputs(extremes.COUNT)
     for choice, told in presets(data, chosen):
         found = extremes.count_broken(choice.function(choice.whole).with_mode("precise"), flat)
         assert found == told["extremes"]["precise"], choice.name
