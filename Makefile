@@ -18,8 +18,8 @@ define install_extra
 @touch $@
 endef
 
-.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation fuzz bench cost lint format \
-        build submission models textures clean
+.PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation fuzz bench cost trade \
+        trade-readme lint format build submission models textures clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -64,6 +64,12 @@ bench: $(VENV)/.harness $(VENV)/.bench ## speed and memory, beside numpy, numba 
 
 cost: $(VENV)/.cost ## what the shading model costs on GPUs, none needed
 	$(BIN)/harness cost shaders/brdf.glsl shade
+
+trade: $(VENV)/.cost $(VENV)/.trade ## what each choice in the shading model costs and how wrong it is, to build/trade/
+	$(BIN)/harness trade project.sprj -o build/trade
+
+trade-readme: $(VENV)/.cost $(VENV)/.trade ## the same, and the README's table and docs/trade.json anew
+	$(BIN)/harness trade project.sprj -o build/trade --readme README.md
 
 lint: $(VENV)/.lint ## format and static checks
 	$(BIN)/ruff check .

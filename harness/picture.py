@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import errno
+import io
 import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -26,6 +28,14 @@ def write_png(path: str | os.PathLike, pixels: np.ndarray) -> None:
     The file appears complete or does not change.
     """
     write(path, lambda file: Image.fromarray(pixels).save(file, format="PNG", compress_level=COMPRESSION))
+
+
+def data_address(pixels: np.ndarray) -> str:
+    """``pixels``, (h, w, 4) uint8, as a PNG in a data: address. An alpha of 255 everywhere is left out."""
+    opaque = (pixels[..., 3] == 255).all()
+    made = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(pixels[..., :3] if opaque else pixels)).save(made, "PNG", optimize=True)
+    return "data:image/png;base64," + base64.b64encode(made.getvalue()).decode()
 
 
 def write_targets(folder: str | os.PathLike, targets: Mapping[str, np.ndarray]) -> None:

@@ -106,11 +106,12 @@ def _evidence(
         for region in part.regions:
             regions.box(region.pass_name)  # before the tests, which take longer
     costs = evidence.costs(parts, path.parent)
+    trade = evidence.trade(read, progress)
     results = None
     if tests:
         progress(f"running the tests in {', '.join(parts.tests)}")
         results = evidence.run_tests(parts, path.parent)
-    return report.Evidence(quoted, regions, results, costs)
+    return report.Evidence(quoted, regions, results, costs, trade)
 
 
 def _check(folder: Path, name: str, limits: Limits) -> list[dict[str, Any]]:

@@ -7,14 +7,14 @@ import subprocess
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 
-from .. import isa, spirv_cost
+from .. import isa, ladder, spirv_cost
 from ..call import shader
 from ..chips import TARGETS
 from ..errors import HarnessError, among
@@ -22,6 +22,7 @@ from ..glsl_syntax import without_comments
 from ..project import Project
 from ..render import Renderer
 from ..tokens import Text
+from ..trade import choices, file, markdown, stale, tables
 from .exercise import Exercise, Quotation, Region
 
 # ---- Lines of shaders ------------------------------------------------------------------------------------------------
@@ -234,3 +235,34 @@ def costs(exercise: Exercise, folder: Path) -> Costs | None:
                 row.append(str(cost.inverse_throughput))
                 driver = cost.driver
     return Costs(columns, [(row.label, cells) for row, cells in zip(exercise.costs, numbers, strict=True)], driver)
+
+
+# ---- The trade -------------------------------------------------------------------------------------------------------
+
+#: beside the project: what `harness trade` measured
+TRADE = "build/trade/trade.json"
+
+
+@dataclass(frozen=True)
+class Trade:
+    """The presets of the shading model, what each costs and how wrong it is; ``legend`` says what the columns are."""
+
+    table: tables.Table
+    legend: str
+    machine: str
+
+
+def trade(project: Project, progress: Callable[[str], None] = lambda said: None) -> Trade | None:
+    """What was measured of a project last; None when that was nothing, or of other shaders, which ``progress`` is told.
+
+    HarnessError when the file is no trade.
+    """
+    path = project.file.parent / TRADE
+    if not path.is_file():
+        return None
+    data = file.read(path)
+    others = stale.differences(data, choices.choices(project, ladder.of_project(project)))
+    if others:
+        progress(f"leaving out {TRADE}, which is not of these shaders ({others[0]}): `make trade` measures them")
+        return None
+    return Trade(tables.summary(data, data["presets"]), markdown.legend(data), markdown.machine(data))

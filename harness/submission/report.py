@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import io
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -12,14 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from PIL import Image
 
 from ..errors import HarnessError
 from ..info import info
+from ..picture import data_address
 from .exercise import Exercise
 
 if TYPE_CHECKING:
-    from .evidence import Costs, Quoted, Regions, TestResults
+    from .evidence import Costs, Quoted, Regions, TestResults, Trade
 
 _TEMPLATE = Path(__file__).with_name("report.html.jinja")
 LONG = 26  # lines; what is longer is folded
@@ -34,6 +32,7 @@ class Evidence:
     regions: Regions
     tests: TestResults | None
     costs: Costs | None
+    trade: Trade | None
 
 
 def write(
@@ -68,11 +67,12 @@ def write(
         project=project.name,
         exercise=exercise,
         parts=parts,
-        picture=_png(picture),
+        picture=data_address(picture),
         size=picture.shape[1::-1],
         tests=evidence.tests and evidence.tests.all,
         findings=findings,
         costs=evidence.costs,
+        trade=evidence.trade,
         files=files,
         driver=info()["driver"],
         long=LONG,
@@ -82,15 +82,7 @@ def write(
 def _crop(pixels: np.ndarray, caption: str) -> tuple[str, str, bool]:
     """A figure, and whether it takes the width of the page."""
     height, width = pixels.shape[:2]
-    return _png(pixels), caption, width > WIDE * height
-
-
-def _png(pixels: np.ndarray) -> str:
-    """A data: address. An alpha of 255 everywhere is left out."""
-    opaque = (pixels[..., 3] == 255).all()
-    made = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(pixels[..., :3] if opaque else pixels)).save(made, "PNG", optimize=True)
-    return "data:image/png;base64," + base64.b64encode(made.getvalue()).decode()
+    return data_address(pixels), caption, width > WIDE * height
 
 
 def sentence(test: str) -> str:
