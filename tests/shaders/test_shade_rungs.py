@@ -102,7 +102,7 @@ def test_fresnel_of_a_pure_material_is_that_of_its_F0(library):
 
 @pytest.mark.parametrize("rung", ["D_CROSS", "D_PROJECT", "D_HALF"])
 def test_a_sharp_highlight_is_its_formula_to_ulps(library, mode, rung):
-    """A black dielectric toward +z, where neither the cross product nor the projection rounds; h beside n by a little."""
+    """A black dielectric toward +z, where neither cross product nor projection rounds; h beside n by a little."""
     random = np.random.default_rng(8)
     cosine, azimuth = random.uniform(0.2, 1, 500), random.uniform(0, 2 * np.pi, 500)
     apart = azimuth + np.pi + 10.0 ** random.uniform(-4, -2, 500)
