@@ -104,6 +104,7 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 //   7. With S = D V n.l and E = (1 - m) n.l/pi the sum S F + E (1 - F) a is (S A + E Z - E A a) a + S B. Z >= A, since
 //      Z - A = 0.96 G: it is not negative. All but a is the same for the three colours.
 // A GPU clamps to 0...1, halves, doubles and quadruples what it computes for nothing: constants are arranged for that.
+// Other rungs put another k, V or w in their places, or scatter another share of the albedo; what adds up is the same.
 vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 {
     float alpha = m.roughness * m.roughness;
