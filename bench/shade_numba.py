@@ -11,7 +11,7 @@ from .inputs import Inputs
 
 # A Python number would make the arithmetic double.
 PI, DIELECTRIC_F0 = np.float32(np.pi), np.float32(0.04)
-ZERO, HALF, ONE = np.float32(0), np.float32(0.5), np.float32(1)
+ZERO, HALF, ONE, TWO, FOUR = (np.float32(x) for x in (0, 0.5, 1, 2, 4))
 #: the least alpha^2, and the least divisor
 LEAST_ALPHA2, LEAST = np.float32(1e-26), np.float32(1e-37)
 
@@ -31,31 +31,27 @@ def _shade(l, v, n, albedo, metalness, roughness, radiance):  # noqa: E741
         alpha2 = alpha * alpha + LEAST_ALPHA2
         NoL = _clamp(nx * lx + ny * ly + nz * lz)
         NoV = _clamp(nx * vx + ny * vy + nz * vz)
-        lit = NoL / PI if NoV > ZERO else ZERO
-        hx, hy, hz = lx + vx, ly + vy, lz + vz
-        NoHH = NoL + NoV
-        x, y, z = ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx
-        sin2, cos2 = x * x + (y * y + (z * z + LEAST)), NoHH * NoHH
+        lit = NoL / (TWO * PI) if NoV > ZERO else ZERO
+        hx, hy, hz = HALF * (lx + vx), HALF * (ly + vy), HALF * (lz + vz)
+        NoHH = HALF * (NoL + NoV)
+        px, py, pz = hx - nx * NoHH, hy - ny * NoHH, hz - nz * NoHH
+        sin2, cos2 = px * px + (py * py + (pz * pz + LEAST)), NoHH * NoHH
         HH = sin2 + cos2
+        c = np.sqrt(HH)
 
         k = alpha * HH / (sin2 + alpha2 * cos2)
         masking = np.sqrt((NoV - alpha2 * NoV) * NoV + alpha2)
         shadowing = np.sqrt((NoL - alpha2 * NoL) * NoL + alpha2)
         V = HALF / (NoL * masking + (NoV * shadowing + LEAST))
-        S = k * k * (V * lit)
+        S = TWO * (k * k * (V * lit))
 
-        c = HALF * np.sqrt(HH)
         x = max(ONE - c, ZERO)
-        x2 = x * x
-        x4 = x2 * x2
-        left2 = c * x + c
-        left4 = left2 * x2 + left2
-        W = x4 * c + left4
+        q = c - HALF * HH
+        y = FOUR * (q - q * q)
+        W, w = x * y + c, x - x * y
         dielectric = ONE - metalness[i]
-        f = DIELECTRIC_F0 * (dielectric * W)
-        A, B = metalness[i] * W, x4 * x + f
-        E = dielectric * lit
-        linear, square, constant = S * A + E * (W - f), E * A, S * B
+        A, G, E = metalness[i] * W, dielectric * W, TWO * (dielectric * lit)
+        linear, square, constant = S * A + E * (W - DIELECTRIC_F0 * G), E * A, S * (DIELECTRIC_F0 * G + w)
         for j in range(3):
             a = albedo[i, j]
             radiance[i, j] = a * (linear - square * a) + constant

@@ -24,32 +24,26 @@ def _shade(l, v, n, albedo, metalness, roughness):  # noqa: E741
     alpha = roughness * roughness
     alpha2 = alpha * alpha + LEAST_ALPHA2
     NoL, NoV = np.clip(_dot(n, l), 0, 1), np.clip(_dot(n, v), 0, 1)
-    lit = np.where(NoV > 0, NoL, np.float32(0)) / PI
-    H = l + v
-    NoHH = NoL + NoV
-    (nx, ny, nz), (hx, hy, hz) = n.T, H.T
-    x, y, z = ny * hz - nz * hy, nz * hx - nx * hz, nx * hy - ny * hx
-    sin2, cos2 = x * x + (y * y + (z * z + LEAST)), NoHH * NoHH
+    lit = np.where(NoV > 0, NoL, np.float32(0)) / (2 * PI)
+    H, NoHH = np.float32(0.5) * (l + v), np.float32(0.5) * (NoL + NoV)
+    p = H - n * NoHH[:, None]
+    sin2, cos2 = _dot(p, p) + LEAST, NoHH * NoHH
     HH = sin2 + cos2
+    c = np.sqrt(HH)
 
     k = alpha * HH / (sin2 + alpha2 * cos2)
     masking = np.sqrt((NoV - alpha2 * NoV) * NoV + alpha2)
     shadowing = np.sqrt((NoL - alpha2 * NoL) * NoL + alpha2)
     V = np.float32(0.5) / (NoL * masking + (NoV * shadowing + LEAST))
-    S = k * k * (V * lit)
+    S = 2 * (k * k * (V * lit))
 
-    c = np.float32(0.5) * np.sqrt(HH)
     x = np.maximum(1 - c, 0)
-    x2 = x * x
-    x4 = x2 * x2
-    left2 = c * x + c
-    left4 = left2 * x2 + left2
-    W = x4 * c + left4
+    q = c - np.float32(0.5) * HH
+    y = 4 * (q - q * q)
+    W, w = x * y + c, x - x * y
     dielectric = 1 - metalness
-    f = DIELECTRIC_F0 * (dielectric * W)
-    A, B = metalness * W, x4 * x + f
-    E = dielectric * lit
-    linear, square, constant = S * A + E * (W - f), E * A, S * B
+    A, G, E = metalness * W, dielectric * W, 2 * (dielectric * lit)
+    linear, square, constant = S * A + E * (W - DIELECTRIC_F0 * G), E * A, S * (DIELECTRIC_F0 * G + w)
     return albedo * (linear[:, None] - square[:, None] * albedo) + constant[:, None]
 
 
