@@ -13,6 +13,11 @@ const float PI = 3.14159265358979;
 const float DIELECTRIC_F0 = 0.04; // reflectance at normal incidence of a refractive index of 1.5
 const float TINY = 1.2e-38;       // just above the smallest normal float: a divisor that is never reached otherwise
 
+// What half precision has to say of numbers: 65504 is its largest, 6.1e-5 its smallest that keeps its digits, and below
+// that a GPU may take 0. In float32 these guards are for the rung D_HALF alone.
+const float HALF_LEAST = 6.2e-5; // added to a divisor, or the least of it
+const float HALF_MOST = 6e4;     // of a highlight: what it is part of stays below 65504, whatever the roundings
+
 struct Material {
     vec3 albedo;     // 0...1: colour scattered by a dielectric, F0 of a metal
     float metalness; // 0...1
@@ -105,19 +110,36 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 //      Z - A = 0.96 G: it is not negative. All but a is the same for the three colours.
 // A GPU clamps to 0...1, halves, doubles and quadruples what it computes for nothing: constants are arranged for that.
 // Other rungs put another k, V or w in their places, or scatter another share of the albedo; what adds up is the same.
+//
+// D_HALF is the same for half precision, in which the guards of the others are 0 or infinite, |H|^2 falls below what has
+// digits, and alpha^4, or k^2, leaves the range. It computes 16 H in the place of H, which cancels in k and which a GPU
+// gets for nothing; k^2 never stands by itself; and the highlight ends at HALF_MOST.
 vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 {
     float alpha = m.roughness * m.roughness;
+#if BRDF_D == D_HALF
+    float alpha2 = alpha * alpha;
+#else
     float alpha2 = alpha * alpha + 1e-26; // so that k <= 5e12 and S < 1e38: nothing here leaves float's range
+#endif
     float NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, v), 0.0, 1.0);
-#if BRDF_D == D_HALF // 1e38 is none
-    float lit = NoV > 0.0 ? NoL / (2.0 * PI) : 0.0;
+#if BRDF_D == D_HALF
+    float behind = clamp(1.0 - HALF_MOST * NoV, 0.0, 1.0); // below also where NoV is nearly 0, which a half hardly tells
 #else
     float behind = clamp(1.0 - 1e38 * NoV, 0.0, 1.0); // 1 where NoV is 0, the viewer behind the surface; else 0
-    float lit = clamp(NoL / (2.0 * PI) - behind, 0.0, 1.0); // n.l/2pi, which is below 1; 0 for a viewer behind
 #endif
+    float lit = clamp(NoL / (2.0 * PI) - behind, 0.0, 1.0); // n.l/2pi, which is below 1; 0 for a viewer behind
 
+#if BRDF_D == D_HALF
+    vec3 H8 = 4.0 * (l + v); // 8 H, and so on
+    float NoHH8 = 4.0 * (NoL + NoV);
+    vec3 p16 = 2.0 * (H8 - n * NoHH8);
+    float sin2 = dot(p16, p16);
+    float HH = sin2 + 4.0 * (NoHH8 * NoHH8); // 256 |H|^2
+    float k = alpha * HH / half_divisor(sin2, 2.0 * (alpha * NoHH8));
+    float c = sqrt(HH) / 16.0;
+#else
     vec3 H = 0.5 * (l + v);
     float NoHH = 0.5 * (NoL + NoV); // n.H where it matters: with both cosines positive
 #if BRDF_D == D_CROSS || BRDF_D == D_PROJECT
@@ -136,23 +158,28 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
     float k = distribution_root(n, H, NoHH, alpha);
 #endif
     float c = sqrt(HH);
+#endif
 
 #if BRDF_V == V_EXACT
     float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
     float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
+#if BRDF_D == D_HALF
+    float V = 1.0 / (NoL * (2.0 * masking) + (NoV * (2.0 * shadowing) + HALF_LEAST));
+#else
     float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
+#endif
 #else
     float V = visibility(NoL, NoV, c, alpha);
 #endif
 #if BRDF_D == D_HALF
-    float S = 2.0 * (min(k * k / PI, 65504.0) * (V * lit * PI));
+    float S = min(2.0 * (k * (k * (V * lit))), HALF_MOST);
 #elif BRDF_V == V_KELEMEN
     float S = min(2.0 * (k * k * (V * lit)), 1e37); // at the horizons its V has no end that the peak of D could meet
 #else
     float S = 2.0 * (k * k * (V * lit));
 #endif
 
-#if BRDF_F == F_GAUSSIAN
+#if BRDF_F == F_GAUSSIAN || BRDF_D == D_HALF // in half precision x - x y has lost w where it is small
     float w = schlick_weight(c);
     float W = 1.0 - w;
 #else
@@ -175,7 +202,11 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 #else
     float G = dielectric * W;
     float B = DIELECTRIC_F0 * G + w;
+#if BRDF_D == D_HALF
+    float Z = (1.0 - DIELECTRIC_F0) * G + A; // so that no rounding makes it less than A
+#else
     float Z = -DIELECTRIC_F0 * G + W;
+#endif
 #endif
     float E = 2.0 * (dielectric * lit);
 

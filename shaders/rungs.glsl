@@ -13,21 +13,21 @@ float distribution_root(vec3 n, vec3 H, float NoHH, float alpha)
 {
     float per_length = inversesqrt(dot(H, H) + 1e-37);
     float NoH = min(NoHH * per_length, 1.0);
-#if BRDF_D == D_HALF
-    // Of numbers up to 1 alone, for half precision [Guy & Agopian 2018, "Physically Based Rendering in Filament", 4.4.1].
-    // A half's least steps are 6e-8: below two of them its divisor would be 0.
-    vec3 nxh = cross(n, H * per_length);
-    float a = alpha * NoH;
-    return alpha / max(dot(nxh, nxh) + a * a, 1.2e-7);
-#else
     float alpha2 = alpha * alpha + 1e-26; // as in shade()
 #if BRDF_D == D_ONE_MINUS
-    // 1 - (n.h)^2 as a product, which loses nothing more [Guy & Agopian 2018, 4.4.1, on desktop].
+    // 1 - (n.h)^2 as a product, which loses nothing more [Guy & Agopian 2018, "Physically Based Rendering in Filament",
+    // 4.4.1, on desktop].
     return alpha / ((1.0 - NoH) * (1.0 + NoH) + alpha2 * (NoH * NoH));
 #else
     return alpha / max(1.0 + NoH * NoH * (alpha2 - 1.0), alpha2);
 #endif
-#endif
+}
+
+// The divisor of k for half precision, of 16 H: sin2 is that of step 2 in shade(), a is alpha n.H. alpha^2 does not stand by
+// itself: below roughness 0.089 it has no digits. max(), since a sum would be felt at roughness 0.2.
+float half_divisor(float sin2, float a)
+{
+    return max(a * a + sin2, HALF_LEAST);
 }
 
 // D: Trowbridge-Reitz/GGX distribution of normals around n at h = (l + v)/|l + v|, by the rung BRDF_D; per steradian.
@@ -35,6 +35,13 @@ float distribution(vec3 l, vec3 v, vec3 n, float alpha)
 {
     vec3 H = l + v;
     float NoHH = max(dot(n, l) + dot(n, v), 0.0);
+#if BRDF_D == D_HALF
+    vec3 across = 8.0 * (H - n * NoHH);
+    float cosine = 8.0 * NoHH;
+    float sin2 = dot(across, across);
+    float k = alpha * (sin2 + cosine * cosine) / half_divisor(sin2, alpha * cosine);
+    return min(k / PI * k, HALF_MOST);
+#else
 #if BRDF_D == D_CROSS || BRDF_D == D_PROJECT
 #if BRDF_D == D_PROJECT
     vec3 across = H - n * NoHH;
@@ -47,28 +54,33 @@ float distribution(vec3 l, vec3 v, vec3 n, float alpha)
 #else
     float k = distribution_root(n, H, NoHH, alpha);
 #endif
-#if BRDF_D == D_HALF
-    return min(k * k / PI, 65504.0); // the largest half
-#else
     return k * k / PI;
 #endif
 }
 
 // ---- Visibility ------------------------------------------------------------------------------------------------------
 
-// The 1e-37 in some is a divisor that only 0/0 would reach.
+// 1/(4 x) for x of 0 or more; a number also at 0.
+float over_four(float x)
+{
+#if BRDF_D == D_HALF
+    return 1.0 / (4.0 * x + HALF_LEAST);
+#else
+    return 0.25 / (x + 1e-37); // which only 0/0 would reach
+#endif
+}
 
 // Hammon's V [Hammon 2017, "PBR Diffuse Lighting for GGX+Smith Microsurfaces", GDC, p. 84]: the square roots of
 // V_SmithGGXCorrelated replaced by linear interpolation in alpha; exact at alpha 0 and 1.
 float V_Hammon(float NoL, float NoV, float alpha)
 {
-    return 0.25 / (mix(NoL * NoV, 0.5 * (NoL + NoV), alpha) + 1e-37); // a GPU halves for nothing
+    return over_four(mix(NoL * NoV, 0.5 * (NoL + NoV), alpha)); // a GPU halves for nothing
 }
 
 // Schlick's rational function in place of each of Smith's two factors, x/(x (1 - k) + k) [Schlick 1994, eq. 19].
 float V_Schlick(float NoL, float NoV, float k)
 {
-    return 0.25 / ((NoL * (1.0 - k) + k) * (NoV * (1.0 - k) + k) + 1e-37);
+    return over_four((NoL * (1.0 - k) + k) * (NoV * (1.0 - k) + k));
 }
 
 // Smith's masking and shadowing as if they were independent, G1(l) G1(v)/(4 NoL NoV) [Walter et al. 2007, eqs. 23, 34].
@@ -83,7 +95,7 @@ float V_SmithGGX(float NoL, float NoV, float alpha)
 // Of Cook and Torrance's V-shaped grooves, 1/(4 LoH^2), whatever the roughness [Kelemen & Szirmay-Kalos 2001, eq. 9].
 float V_Kelemen(float LoH)
 {
-    return 0.25 / (LoH * LoH + 1e-37);
+    return over_four(LoH * LoH);
 }
 
 // V = G/(4 NoL NoV), by the rung BRDF_V.
