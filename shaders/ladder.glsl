@@ -8,7 +8,7 @@
 #define D_CROSS 1     // from |n x H|: to the rounding of the vectors at every roughness, n's length not among them
 #define D_ONE_MINUS 2 // from (1 - n.h)(1 + n.h): the algebra is sound, n.h is as coarse as in the exercise's
 #define D_PROJECT 3   // from |H - n (n.H)|: as cheap as any, as if n had been rounded a few times more
-#define D_HALF 4      // from |n x h|, up to 65504: for half precision
+#define D_HALF 4      // as D_PROJECT, with guards that a half has, up to 6e4: for half precision
 #ifndef BRDF_D
 #define BRDF_D D_PROJECT
 #endif

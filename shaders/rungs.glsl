@@ -89,7 +89,11 @@ float V_SmithGGX(float NoL, float NoV, float alpha)
     float alpha2 = alpha * alpha + 1e-26; // as in shade(), whose k does not outgrow it then
     float masking = NoV + sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
     float shadowing = NoL + sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
+#if BRDF_D == D_HALF
+    return 1.0 / (masking * shadowing + HALF_LEAST);
+#else
     return 1.0 / (masking * shadowing);
+#endif
 }
 
 // Of Cook and Torrance's V-shaped grooves, 1/(4 LoH^2), whatever the roughness [Kelemen & Szirmay-Kalos 2001, eq. 9].

@@ -20,6 +20,24 @@ def D_GGX(sin2, cos2, alpha):
     return alpha**2 / (math.pi * (cos2 * alpha**2 + sin2) ** 2)
 
 
+#: of brdf.glsl, for half precision: the least divisor, and the largest highlight
+HALF_LEAST, HALF_MOST = 6.2e-5, 6e4
+
+
+def D_HALF(sin2, cos2, alpha, HH):
+    """D_GGX, but its k = alpha |H|^2/(|n x H|^2 + alpha^2 (n.H)^2) is of 8 (l + v) and divides by HALF_LEAST at least.
+
+    HH = |l + v|^2.
+    """
+    k = alpha * 64 * HH / np.maximum(64 * HH * (sin2 + alpha**2 * cos2), HALF_LEAST)
+    return k**2 / math.pi
+
+
+def lit_half(NoL, NoV):
+    """n.l, which ends not below n.v = 0 but, as 1 - HALF_MOST n.v, just above."""
+    return np.maximum(NoL - 2 * math.pi * np.maximum(1 - HALF_MOST * NoV, 0), 0)
+
+
 # ---- Visibility ------------------------------------------------------------------------------------------------------
 
 
@@ -166,7 +184,10 @@ def energy_cosine(NoV, roughness):
 
 
 def shade(l, v, n, albedo, metalness, roughness, macros):  # noqa: E741
-    """(diffuse + D V F compensation) n.l of a model, given by a rung for each of the macros; both cosines positive."""
+    """(diffuse + D V F compensation) n.l of a model, given by a rung for each of the macros; both cosines positive.
+
+    With D_HALF they are those of brdf.glsl with its guards: 1/V has HALF_LEAST more.
+    """
     n = n / np.linalg.norm(n, axis=-1, keepdims=True)
     H = l + v
     HH = (H * H).sum(-1)
@@ -174,12 +195,18 @@ def shade(l, v, n, albedo, metalness, roughness, macros):  # noqa: E741
     across = np.cross(n, H)
     NoL, NoV, LoV = ((a * b).sum(-1) for a, b in ((n, l), (n, v), (l, v)))
     alpha = roughness**2
-    D = D_GGX((across**2).sum(-1) / HH, (n * H).sum(-1) ** 2 / HH, alpha)
-    if macros["BRDF_D"] == "D_HALF":
-        D = np.minimum(D, 65504)
+    sin2, cos2 = (across**2).sum(-1) / HH, (n * H).sum(-1) ** 2 / HH
     V = globals()[macros["BRDF_V"]](NoL, NoV, LoH, alpha)
+    lit = NoL
+    if macros["BRDF_D"] == "D_HALF":
+        lit = lit_half(NoL, NoV)
+        highlight = np.minimum(D_HALF(sin2, cos2, alpha, HH) / (1 / V + HALF_LEAST) * lit, HALF_MOST)
+    else:
+        highlight = D_GGX(sin2, cos2, alpha) * V * NoL
     of_metal, of_dielectric = FRESNEL[macros["BRDF_F"]]
-    NoL, NoV, LoH, LoV, r, m = (x[:, None] for x in (NoL, NoV, LoH, LoV, roughness, metalness))
+    NoL, NoV, LoH, LoV, r, m, lit, highlight = (
+        x[:, None] for x in (NoL, NoV, LoH, LoV, roughness, metalness, lit, highlight)
+    )
     F = m * of_metal(albedo, LoH) + (1 - m) * of_dielectric(LoH)
     several = 1.0
     of_dielectric_several = 1.0
@@ -196,7 +223,7 @@ def shade(l, v, n, albedo, metalness, roughness, macros):  # noqa: E741
         "DIFFUSE_EON": lambda: eon(albedo, r, NoL, NoV, LoV),
         "DIFFUSE_ENERGY": lambda: albedo * energy_share(NoV, r, of_dielectric, of_dielectric_several),
     }[macros["BRDF_DIFFUSE"]]()
-    return (F * (D * V)[:, None] * several + (1 - m) * scattered / math.pi) * NoL
+    return F * highlight * several + (1 - m) * scattered / math.pi * lit
 
 
 def energy_share(NoV, roughness, of_dielectric, several):

@@ -13,11 +13,13 @@ from rungs import BRDF, DEFAULT, LADDER, PRESETS, SINGLE, name, pairs
 
 from harness import shader
 from harness.domain import samples
+from harness.trade import extremes as trade_extremes
 
 U = 2.0**-24
 #: cosines are off by 3 U, against 0.1 at least; d of D, 1/16 at least here, by 9 U if it is from n.h, and twice into D;
 #: 1 - F and 1 - E by U against 1, of which 1/10 is left at least; sums and products of some 20 positive numbers
 TOLERANCE = 2 * (2 * 3 + 3) * U * 16 + 4 * 3 * U / 0.1 + 40 * U
+MODES = ("mediump", "double")
 #: llvmpipe's pow(x, 5) and exp2, in ulp
 POW_ULP = 100
 
@@ -175,15 +177,55 @@ def test_every_term_by_itself_is_finite_and_not_negative(library, term):
         assert got.min() >= 0, rung.value
 
 
-def test_the_largest_half_is_the_end_of_the_highlight_in_half_precisions_form(library, mode):
-    """With l = v = n the highlight is D V = D/4 of a white metal."""
-    roughness = np.float32([0.001, 0.01, 0.03, 0.0465, 0.047, 0.1])
-    got = library("brdf.glsl", mode, BRDF_D="D_HALF").shade(
-        [0, 0, 1], [0, 0, 1], [0, 0, 1], {"albedo": [1, 1, 1], "metalness": 1, "roughness": roughness}
-    )[:, 0]
-    a = roughness.astype(float) ** 2
-    D = np.minimum((a / np.maximum(a**2, 1.2e-7)) ** 2 / np.pi, 65504)
-    np.testing.assert_allclose(got, D / 4, rtol=20 * U, atol=0)
+def test_half_precisions_form_is_the_formula_with_its_guards(library, mode):
+    """h = n and h beside it, cosines that its guards are felt at, and roughnesses; white metals and dielectrics.
+
+    Toward +z, where nothing rounds but H, so that the guards are not hidden.
+    """
+    cosines = np.float32([1, 0.3, 1e-2, 1e-3, 1e-4, 3e-5, 1.6e-5, 1e-6])
+    beside, roughnesses = [0, 1e-3, 0.3], np.float32([1e-3, 0.02, 0.03, 0.05, 0.089, 0.3, 1])
+    grid = np.meshgrid(cosines, cosines, beside, roughnesses, [0, 1], indexing="ij")
+    cos_l, cos_v, apart, roughness, metalness = (x.ravel() for x in grid)
+    sin_l, sin_v = (np.sqrt(1 - x.astype(float) ** 2) for x in (cos_l, cos_v))
+    l = np.float32(np.stack([sin_l, 0 * sin_l, cos_l], -1))  # noqa: E741
+    v = np.float32(np.stack([-sin_v * np.cos(apart), sin_v * np.sin(apart), cos_v], -1))
+    n, white = np.tile(np.float32([0, 0, 1]), (len(l), 1)), np.ones((len(l), 3), np.float32)
+    inputs = l, v, n, white, np.float32(metalness), np.float32(roughness)
+    for rung in ({"BRDF_V": "V_EXACT"}, {"BRDF_V": "V_HAMMON"}, {"BRDF_V": "V_SCHLICK"}, {"BRDF_V": "V_SEPARABLE"}):
+        macros = {"BRDF_D": "D_HALF", **rung}
+        got = called(library("brdf.glsl", mode, **macros).shade, *inputs)
+        want = ladder_reference.shade(*(x.astype(float) for x in inputs), {**DEFAULT, **macros})
+        most = ladder_reference.HALF_MOST
+        assert (want >= most).any() and (want == 0).any()
+        # n.l/2pi less what is behind cancels down to 0.0077; and 1 - F, of at most n.l/pi, is from 1 - (1 - c)^5
+        bound = (100 + 1 / 0.0077) * U * want + 8 * U * cos_l[:, None] / np.pi
+        assert (np.abs(got - want) <= bound).all()
+
+
+def test_the_mobile_preset_is_finite_and_not_negative_in_half_precision(library):
+    """At the extremes that the trade counts, a sixteenth of them."""
+    (mobile,) = (preset.macros for preset in LADDER.presets if preset.name == "mobile")
+    function = library("brdf.glsl", "mediump", **{macro: mobile[macro] for macro in BRDF}).shade
+    assert trade_extremes.count_broken(function, trade_extremes.inputs(1 << 16)) == {"non_finite": 0, "negative": 0}
+
+
+def test_half_precisions_form_keeps_its_digits_in_half_precision(library):
+    """Against the same in double, of the same inputs as halves, from roughness 0.089 and cosines of 0.05."""
+    random = np.random.default_rng(41)
+    l, v, n = random.standard_normal((3, 20_000, 3))  # noqa: E741
+    near = np.arange(20_000) % 2 == 0
+    l, n = (a / np.linalg.norm(a, axis=1, keepdims=True) for a in (l, n))  # noqa: E741
+    mirrored = 2 * (l * n).sum(1, keepdims=True) * n - l + 10 ** random.uniform(-3, 0, (20_000, 1)) * v
+    v = np.where(near[:, None], mirrored, v)
+    v /= np.linalg.norm(v, axis=1, keepdims=True)
+    lit = ((n * l).sum(1) >= 0.05) & ((n * v).sum(1) >= 0.05)
+    count = lit.sum()
+    materials = random.random((count, 3)), random.choice([0, 0.3, 1], count), random.uniform(0.089, 1, count)
+    inputs = [np.float32(np.float16(x)) for x in (l[lit], v[lit], n[lit], *materials)]
+    for rung in ({"BRDF_V": "V_HAMMON", "BRDF_DIFFUSE": "DIFFUSE_LAMBERT"}, {}):
+        half, double = (called(library("brdf.glsl", m, BRDF_D="D_HALF", **rung).shade, *inputs) for m in MODES)
+        errors = np.abs(half / double - 1)
+        assert np.median(errors) < 2**-9 and np.quantile(errors, 0.99) < 0.02
 
 
 def test_Kelemens_highlight_is_his_until_its_end(library, mode):
