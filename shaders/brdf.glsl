@@ -125,7 +125,7 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
     float NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, v), 0.0, 1.0);
 #if BRDF_D == D_HALF
-    float behind = clamp(1.0 - HALF_MOST * NoV, 0.0, 1.0); // below also where NoV is nearly 0, which a half hardly tells
+    float behind = clamp(1.0 - HALF_MOST * NoV, 0.0, 1.0); // also where NoV is below 1.7e-5, which a half hardly tells from 0
 #else
     float behind = clamp(1.0 - 1e38 * NoV, 0.0, 1.0); // 1 where NoV is 0, the viewer behind the surface; else 0
 #endif

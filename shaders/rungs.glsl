@@ -24,7 +24,7 @@ float distribution_root(vec3 n, vec3 H, float NoHH, float alpha)
 }
 
 // The divisor of k for half precision, of 16 H: sin2 is that of step 2 in shade(), a is alpha n.H. alpha^2 does not stand by
-// itself: below roughness 0.089 it has no digits. max(), since a sum would be felt at roughness 0.2.
+// itself: below roughness 0.089 it has no digits. max(), since a sum would take 4 % off k at 0.089 and n.H 0.3.
 float half_divisor(float sin2, float a)
 {
     return max(a * a + sin2, HALF_LEAST);
