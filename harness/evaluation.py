@@ -71,7 +71,9 @@ class Evaluation:
         self._stage = self._compiled(Job(source, spoken, signature, inputs, self.outputs, self._counts))
         program = self._stage.program
         #: those that the function reads; of an array the first element stands for all
-        self.uniforms = {n.removesuffix(_FIRST): u for n, u in program.uniforms.items() if not n.startswith("hn_")}
+        self.uniforms = self._read(
+            {n.removesuffix(_FIRST): u for n, u in program.uniforms.items() if not n.startswith("hn_")}
+        )
         for name, uniform in self.uniforms.items():
             kind = gl_enums.GLSL_TYPE_NAMES.get(uniform.type)
             if kind in SAMPLERS:
@@ -86,6 +88,19 @@ class Evaluation:
                 f"mode mediump: this driver ({native.context_info()['renderer']}) computes it in single precision",
                 *self.signature.origin,
             )
+
+    def _read(self, uniforms: dict[str, native.Variable]) -> dict[str, native.Variable]:
+        """Without the members of structures that nothing reads: the driver lists all of them where one is read."""
+        if not any("." in name for name in uniforms):
+            return uniforms
+        from .interpretation import uniforms_read  # which few functions have to pay for
+
+        read = uniforms_read(self._source, self.signature)
+        return {
+            name: u
+            for name, u in uniforms.items()
+            if "." not in name or name in read or gl_enums.GLSL_TYPE_NAMES.get(u.type) in SAMPLERS
+        }
 
     def _translated(self, source: Source) -> Signature:
         """The function's signature in the dialect that the mode compiles, which has precisions."""

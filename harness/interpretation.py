@@ -239,4 +239,13 @@ def _described(uniform: Uniform) -> native.Variable:
     kind, size = uniform.type, 1
     while kind.kind == "array":
         kind, size = kind.element, size * kind.length
-    return native.Variable(_GL_TYPES.get(str(kind), 0), size, -1 if uniform.in_block else 0)
+    return native.Variable(_GL_TYPES.get(str(kind), 0), size, 0)
+
+
+def uniforms_read(source: Source, called: Signature) -> set[str]:
+    """The names of the uniforms that a function may read, as its SPIR-V tells. GlslError when it does not compile."""
+    try:
+        module, _ = _module(source.text, _main(called))
+    except NativeError as error:
+        raise source.error(str(error)) from None
+    return set(interpreter_uniforms.read_by(module, _called(module)))

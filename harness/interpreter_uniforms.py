@@ -19,7 +19,6 @@ class Uniform:
     type: Type
     variable: int
     path: tuple[int, ...]
-    in_block: bool
 
 
 def read_by(module: Module, function: Function) -> dict[str, Uniform]:
@@ -38,12 +37,10 @@ def read_by(module: Module, function: Function) -> dict[str, Uniform]:
     for identifier, variable in module.variables.items():
         if identifier not in paths or variable.name.startswith(PREFIX):
             continue
-        if variable.storage in (spirv.UNIFORM_CONSTANT, spirv.UNIFORM):
-            in_block = variable.storage == spirv.UNIFORM
-            prefix = variable.name if not in_block or not variable.name else variable.type.name
-            for name, kind, path in _numeric(prefix, variable.type, ()):
+        if variable.storage == spirv.UNIFORM_CONSTANT:
+            for name, kind, path in _numeric(variable.name, variable.type, ()):
                 if any(_overlap(path, used) for used in paths[identifier]):
-                    uniforms[name] = Uniform(kind, identifier, path, in_block)
+                    uniforms[name] = Uniform(kind, identifier, path)
     return uniforms
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from itertools import takewhile
 
-from .tokens import CLOSING, PRECISION, Text
+from .tokens import CLOSING, PRECISION, Statement, Text
 
 _INTERFACE = {"in", "out", "flat", "smooth", "noperspective", "centroid", "sample", "invariant", "precise"}
 
@@ -30,8 +30,8 @@ def result_names(text: str) -> list[str]:
 def isolate(text: str) -> str:
     """The text without main(), and with its inputs and outputs made plain global variables.
 
-    What is left can be evaluated in a stage of ours, whose inputs and outputs are our own. Uniform blocks get packed,
-    for a driver takes all members of others for active, read or not.
+    What is left can be evaluated in a stage of ours, whose inputs and outputs are our own. The members of uniform
+    blocks become uniforms, by the names that they have in the source: no program of another stage shares their memory.
     """
     code = Text(text)
     for statement in code.statements():
@@ -41,10 +41,10 @@ def isolate(text: str) -> str:
             continue
         head = list(takewhile(lambda k: code[k] not in ("{", ";", "="), code.solid(statement.first, statement.last)))
         words = {code[k] for k in head}
-        if "uniform" in words and "struct" not in words and code[code.next(head[-1])] == "{":
-            for k in (k for k in head if code[k] == "layout"):
-                code.blank(k, code.closing(code.next(k)))
-            code.tokens[statement.first].before = "layout(packed) "
+        after = code.next(head[-1]) if head else None
+        if "uniform" in words and "struct" not in words and after is not None and code[after] == "{":
+            _open_block(code, statement, head)
+            continue
         dropped, k = [], statement.first
         while code[k] in _INTERFACE or code[k] == "layout" or code[k] in PRECISION:
             end = code.closing(code.next(k)) if code[k] == "layout" else k
@@ -63,6 +63,26 @@ def isolate(text: str) -> str:
         if code[k] == ";":
             code.blank(k, k)
     return str(code)
+
+
+def _open_block(code: Text, block: Statement, head: list[int]) -> None:
+    """Makes uniforms of the members of a block; of one with a name a structure, and a uniform of that."""
+    opening = code.next(head[-1])
+    closing = code.closing(opening)
+    instance = code.next(closing)
+    for k in [k for k in code.solid(block.first, closing) if code[k] == "layout"]:
+        code.blank(k, code.closing(code.next(k)))
+    uniform = next(k for k in head if code[k] == "uniform")
+    if code[instance] == ";":
+        for k in (*head, opening, closing, instance):
+            code.blank(k, k)
+        k = code.next(opening)
+        while k != closing:
+            code.tokens[k].before = "uniform "
+            k = code.next(next(j for j in code.solid(k) if code[j] == ";"))
+    else:
+        code.tokens[uniform].text = "struct"
+        code.tokens[closing].after = f"; uniform {code[head[-1]]}"
 
 
 def has_variables(text: str) -> bool:

@@ -59,8 +59,6 @@ def _set(evaluation: Evaluation, name: str, uniform: Any, given: Mapping) -> Non
         return
     if stated not in _TYPES:
         raise CallError(f"{function} reads the uniform {stated} {name}, which cannot be given")
-    if uniform.location < 0:
-        raise CallError(f"{function} reads {name} of a uniform block, which cannot be given")
     length = evaluation.array_length(name)
     kind = _TYPES[stated] if length is None else Array(_TYPES[stated], length)
     if name not in given:

@@ -182,7 +182,7 @@ def test_a_global_that_begins_with_a_uniform_follows_it(functions):
         ("scaled", {}, "scaled reads the uniform float gain: give it by its name"),
         ("plain", {"gain": 1}, "has no parameter gain and reads no such uniform"),
         ("lit", {"lights[0].colour": [1, 2, 3], "lights[1].colour": [1, 2, 3]}, "no parameter lights"),
-        ("blocked", {}, "of_block of a uniform block, which cannot be given"),
+        ("blocked", {}, "blocked reads the uniform float of_block: give it by its name"),
         ("sampled", {}, "test.glsl:18: a texture or image has no double version"),
     ],
 )

@@ -124,9 +124,11 @@ def test_the_driver_accepts_the_result(text):
         ("highp float f() { return 1.0; }", None),
         ("float f(in float x, out float y) { y = x; return x; }", None),
         ("uniform vec3 u;", None),
-        ("uniform Block { vec3 u; };", "layout(packed) uniform Block { vec3 u; };"),
-        ("layout(std140) uniform Block { vec3 u; } block;", "layout(packed) uniform Block { vec3 u; } block;"),
-        ("layout(std140, row_major) uniform Block { mat3 m; };", "layout(packed) uniform Block { mat3 m; };"),
+        ("uniform Block { vec3 u; float a, b[2]; };", "uniform vec3 u; uniform float a, b[2];"),
+        ("layout(std140) uniform Block { vec3 u; } block;", "struct Block { vec3 u; }; uniform Block block;"),
+        ("uniform Block { vec3 u; } block[2];", "struct Block { vec3 u; }; uniform Block block[2];"),
+        ("layout(std140, row_major) uniform Block { layout(offset = 16) mat3 m; };", "uniform mat3 m;"),
+        ("layout(std140) uniform;", None),
         ("layout(location = 1) uniform vec3 u;", None),
         ("in Block { vec3 n; } block;", None),
         ("const vec3 K = vec3(1.0);", None),
@@ -144,7 +146,12 @@ def test_isolate_makes_plain_globals_of_inputs_and_outputs(text, expected):
 
 
 @pytest.mark.parametrize(
-    "end", ["", "float", "layout(", "in", "void main(", "void main() {", "}", ")", "[", "#", "struct"]
+    "end",
+    [
+        *("", "float", "layout(", "in", "void main(", "void main() {", "}", ")", "[", "#", "struct"),
+        "uniform B",
+        "uniform B {",
+    ],
 )
 def test_a_text_cut_short_is_no_accident(end):
     """What a compiler refuses later must get there: nothing is raised here."""

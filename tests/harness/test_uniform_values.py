@@ -24,7 +24,9 @@ uniform vec2 points[2];
 uniform mat2 turns[2];
 uniform struct Light { vec3 color; float power; } light;
 uniform struct Spot { float x; } spots[2];
-layout(std140) uniform Block { float of_block; };
+layout(std140) uniform Block { float of_block; layout(row_major) mat2 turn, unread; float gains[2]; };
+layout(std140) uniform Camera { vec4 eye; float near, far; } camera;
+uniform Many { Spot spot; float q; } many[2];
 uniform sampler2D map;
 float gained(float x) { return gain * x; }
 vec3 moved(vec3 v) { return v + offset; }
@@ -40,6 +42,9 @@ vec2 turned(int i, vec2 v) { return turns[i] * v; }
 float lit(float x) { return light.color.y * light.power * x; }
 float spot(float x) { return spots[0].x + spots[1].x * x; }
 float blocked(float x) { return of_block * x; }
+vec2 block_turned(vec2 x) { return turn * x * gains[1]; }
+float depth(float z) { return (z - camera.near) / (camera.far - camera.near); }
+float several(float x) { return x * many[0].spot.x + many[1].q; }
 vec4 sampled(vec2 uv) { return texture(map, uv); }
 float plain(float x) { return x; }
 uniform mat2x3 wide;
@@ -78,6 +83,10 @@ def uniforms(tmp_path_factory):
         ("spot", [2], {"spots[0].x": 3, "spots[1].x": 5}, 13),
         ("widened", [[1, 2]], {"wide": [[1, 2], [3, 4], [5, 6]]}, [5, 11, 17]),
         ("counted", [1], {"counts": [0, 7, 4294967294]}, [1, 8, 4294967295]),
+        ("blocked", [3], {"of_block": 2}, 6),
+        ("block_turned", [[1, 10]], {"turn": [[1, 2], [3, 4]], "gains": [0, 2]}, [42, 86]),
+        ("depth", [5], {"camera.near": 1, "camera.far": 9}, 0.5),  # the block's other members are not asked for
+        ("several", [5], {"many[0].spot.x": 2, "many[1].q": 3}, 13),
         ("plain", [1], {}, 1),
     ],
 )
@@ -112,7 +121,10 @@ def test_uniforms_of_two_functions_are_their_own(uniforms):
         ("if_on", 1, {"on": 1}, "on is a bool, got numbers of type int64"),
         ("sampled", [0, 0], {"map": 1}, "map is a sampler2D: give it a harness.Texture, got int"),
         ("sampled", [0, 0], {}, "sampled reads the uniform sampler2D map: give it a Texture by its name"),
-        ("blocked", 1, {}, "of_block of a uniform block, which cannot be given"),
+        ("blocked", 1, {}, "blocked reads the uniform float of_block: give it by its name"),
+        ("depth", 1, {"camera.near": 1}, "depth reads the uniform float camera.far: give it by its name"),
+        ("depth", 1, {"near": 1}, "depth(float z) has no parameter near and reads no such uniform"),
+        ("depth", 1, {"camera.eye": [0, 0, 0, 1]}, "has no parameter camera.eye and reads no such uniform"),
     ],
 )
 def test_a_uniform_that_does_not_fit_is_refused(uniforms, name, argument, given, message):
