@@ -1,0 +1,290 @@
+"""The numbers of extremes.md. Each is asked for in the texts themselves, as {family[words]:format}.
+
+A family is one of the functions in FAMILIES; its words are the arguments. {peak[D_HALF as-written .02]:.2f} is
+peak("D_HALF", "as-written", ".02"), printed with two digits. MODES among the words says in what arithmetic.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import extreme_scenes as scenes
+import numpy as np
+from extreme_scenes import GREY, HALF, LIGHT, MODES, TERM_OF, VIEWER, close_up, model, term
+
+from harness import ulp_difference
+
+#: side of the grids that are measured
+SIZE = 128
+#: how many inputs of each form the table of modes has
+COUNT = 4096
+#: less than the smallest normal half is no error: half precision has fewer and fewer digits below
+HALF_NORMAL = 2.0**-14
+
+
+class Family:
+    """A function of words, asked by index, once for each: ``Family(f)["a b"]`` is ``f("a", "b")``."""
+
+    def __init__(self, measure):
+        self._measure = cache(measure)
+
+    def __getitem__(self, words: str) -> float:
+        return self._measure(*words.split())
+
+
+def mode_of(words: str) -> str:
+    """The arithmetic that a number was measured in: `precise` where its words have none."""
+    return next((word for word in words.split() if word in MODES), "precise")
+
+
+# ---- Distribution ----------------------------------------------------------------------------------------------------
+
+
+def highlight(form: str, mode: str, roughness: float) -> np.ndarray:
+    """D around its peak, as far as three times alpha, as a share of the peak that it should have."""
+    alpha = roughness**2
+    d = term(form, mode)(LIGHT, VIEWER, close_up(3 * alpha, SIZE), alpha)
+    return np.asarray(d, float) * (np.pi * alpha**2)
+
+
+def highlight_error(form: str, mode: str, roughness: str, quantile: str = "1") -> float:
+    """The largest relative error of D around its peak, or the one that a share of the pixels do not exceed."""
+    exact = highlight("D_CROSS", "double", float(roughness))
+    with np.errstate(invalid="ignore"):
+        error = np.abs(highlight(form, mode, float(roughness)) / exact - 1)
+    return float(np.quantile(np.where(np.isnan(error), np.inf, error), float(quantile), method="nearest"))
+
+
+def highlight_broken(form: str, mode: str, roughness: str) -> float:
+    """The share of the pixels around the peak of D that are NaN or infinite."""
+    return float(np.mean(~np.isfinite(highlight(form, mode, float(roughness)))))
+
+
+def peak(form: str, mode: str, roughness: str, length: str = "1") -> float:
+    """D at h = n as a share of 1/(pi alpha^2), n being of this length."""
+    alpha = float(roughness) ** 2
+    d = term(form, mode)(VIEWER, VIEWER, VIEWER * float(length), alpha)
+    return float(d) * np.pi * alpha**2
+
+
+# ---- Visibility ------------------------------------------------------------------------------------------------------
+
+
+def visibility(form: str, mode: str, NoL: str, NoV: str, alpha: str) -> float:
+    """V at two cosines, with l and v on opposite sides of the normal."""
+    i, o = float(NoL), float(NoV)
+    return float(term(form, mode)(i, o, np.cos((np.arccos(i) + np.arccos(o)) / 2), float(alpha)))
+
+
+def visibility_off(form: str, mode: str, roughness: str) -> float:
+    """The largest relative deviation from the exact V, over cosines of 1/256 and more."""
+    NoL, NoV, LoH = scenes.cosines(SIZE)
+    alpha = float(roughness) ** 2
+    exact = term("V_EXACT", "double")(NoL, NoV, LoH, alpha)
+    return float(np.abs(term(form, mode)(NoL, NoV, LoH, alpha) / exact - 1).max())
+
+
+def dark_side(mode: str, roughness: str, *forms: str) -> float:
+    """The share of the unlit part of a sphere where shade is NaN or infinite."""
+    n, inside = scenes.sphere(SIZE)
+    values = model("shade", mode, *forms)(LIGHT, VIEWER, n, {**GREY, "roughness": float(roughness)})
+    unlit = inside & (n @ LIGHT < 0)
+    return float(np.mean(~np.isfinite(values[unlit]).all(-1)))
+
+
+# ---- Fresnel ---------------------------------------------------------------------------------------------------------
+
+COSINES = np.linspace(0, 1, 1001, dtype=np.float32)
+
+
+def fresnel(form: str, mode: str, F0: str, LoH: str) -> float:
+    """F at one angle."""
+    return float(term(form, mode)([float(F0)] * 3, float(LoH))[0])
+
+
+def fresnel_error(form: str, mode: str) -> np.ndarray:
+    """Error of F in units in the last place, over COSINES, where F0 is 0: that of the power alone."""
+    exact = term(form, "double")([0.0] * 3, COSINES)[..., 0]
+    got = term(form, mode)([0.0] * 3, COSINES)[..., 0]
+    return np.where(exact > 1e-30, ulp_difference(got, exact), 0)
+
+
+def fresnel_ulp(form: str, mode: str) -> float:
+    """The largest error of F where F0 is 0, in units in the last place."""
+    return float(fresnel_error(form, mode).max())
+
+
+def fresnel_deviation(form: str, mode: str, F0: float, reference: str) -> np.ndarray:
+    """F relative to another form in double, less 1, over COSINES."""
+    exact = term(reference, "double")([F0] * 3, COSINES)[..., 0]
+    return np.asarray(term(form, mode)([F0] * 3, COSINES)[..., 0], float) / exact - 1
+
+
+def fresnel_off(form: str, mode: str, F0: str, reference: str) -> float:
+    """The largest relative deviation of F from another form in double."""
+    return float(np.abs(fresnel_deviation(form, mode, float(F0), reference)).max())
+
+
+def fresnel_off_at(form: str, mode: str, F0: str, reference: str) -> float:
+    """The angle between l and h, in degrees, where that is."""
+    at = np.abs(fresnel_deviation(form, mode, float(F0), reference)).argmax()
+    return float(np.degrees(np.arccos(COSINES[at])))
+
+
+# ---- Energy ----------------------------------------------------------------------------------------------------------
+
+
+def furnace_most(surface: str, roughness: str, *forms: str) -> float:
+    """The most that a white `metal` or `dielectric` returns in a white furnace, toward any cosine of 0.01 and more."""
+    return float(scenes.furnace(forms, float(roughness), surface == "metal").max())
+
+
+def furnace_least(surface: str, roughness: str, *forms: str) -> float:
+    """The least."""
+    return float(scenes.furnace(forms, float(roughness), surface == "metal").min())
+
+
+def exchanged(roughness: float, surface: str, *forms: str) -> np.ndarray:
+    """How many times as much goes from l to v as from v to l, over the cosines of both."""
+    NoL, NoV, _ = scenes.cosines(SIZE)
+    l, v = scenes.opposite(NoL, NoV)  # noqa: E741
+    shade = model("shade", "precise", *forms)
+    material = {**(scenes.METAL if surface == "metal" else scenes.WHITE), "roughness": roughness}
+    there = shade(l, v, VIEWER, material)[..., 0] / NoL
+    back = shade(v, l, VIEWER, material)[..., 0] / NoV
+    return there / back
+
+
+def reciprocity(roughness: str, surface: str, *forms: str) -> float:
+    """The largest of these ratios."""
+    return float(exchanged(float(roughness), surface, *forms).max())
+
+
+# ---- Colour ----------------------------------------------------------------------------------------------------------
+
+CODES = np.arange(256)
+
+
+def _decoded(form: str, mode: str) -> np.ndarray:
+    return np.asarray(term(form, mode)(np.repeat(CODES[:, None] / 255, 3, 1))[:, 0], float)
+
+
+def code_error(form: str, mode: str) -> np.ndarray:
+    """By how many codes each of the 256 is off, when it is decoded by a form and encoded by the standard's curve."""
+    encode = scenes.color("double").linear_to_srgb
+    shown = encode(np.repeat(_decoded(form, mode)[:, None], 3, 1))[:, 0]
+    return np.rint(255 * np.asarray(shown, float)) - CODES
+
+
+def decode_off(form: str, mode: str) -> float:
+    """The largest absolute deviation from the standard's curve."""
+    return float(np.abs(_decoded(form, mode) - _decoded("SRGB_PIECEWISE", "double")).max())
+
+
+def code_off(form: str, mode: str) -> float:
+    """The most that a code is off."""
+    return float(np.abs(code_error(form, mode)).max())
+
+
+def codes_changed(form: str, mode: str) -> float:
+    """How many of the 256 codes change."""
+    return float(np.count_nonzero(code_error(form, mode)))
+
+
+def darkest(form: str, mode: str) -> float:
+    """The darkest code that is not black as a share of what it stands for."""
+    return float(_decoded(form, mode)[1] / _decoded("SRGB_PIECEWISE", "double")[1])
+
+
+# ---- Whole models ----------------------------------------------------------------------------------------------------
+
+
+def shaded(function: str, mode: str, roughness: str, where: str) -> float:
+    """What a grey dielectric returns: at `mirror`, l and v equal to n; at `through`, l = -v with l above the surface;
+    at `horizon`, both directions exactly in the plane of the surface."""
+    l, v = {  # noqa: E741
+        "mirror": (VIEWER, VIEWER),
+        "through": (np.array([0.6, 0, 0.8]), -np.array([0.6, 0, 0.8])),
+        "horizon": (np.array([1.0, 0, 0]), np.array([0, 1.0, 0])),
+    }[where]
+    return float(model(function, mode)(l, v, VIEWER, {**GREY, "roughness": float(roughness)})[0])
+
+
+def dot_angle(mode: str) -> float:
+    """Of the exercise's model at roughness 0: how far h may be from n, in degrees, for it to be NaN or infinite."""
+    angle = np.radians(np.linspace(0, 4, 4001))
+    n = np.stack([np.sin(angle), np.zeros_like(angle), np.cos(angle)], -1)
+    values = model("shade_exercise", mode)(VIEWER, VIEWER, n, {**GREY, "roughness": 0.0})
+    return float(np.degrees(angle[~np.isfinite(values).all(-1)].max(initial=0)))
+
+
+def on_the_way(function: str) -> np.ndarray:
+    """Of a sphere lit from exactly behind: where a value that the function computes on the way is not finite."""
+    n, inside = scenes.sphere(SIZE)
+    trace = model(function, "double").trace(-VIEWER, VIEWER, n, {**GREY, "roughness": 0.3})
+    return inside & np.any([local.non_finite for local in trace], axis=0)
+
+
+def hidden(function: str) -> float:
+    """The share of such a sphere where that is so."""
+    return float(np.mean(on_the_way(function)[scenes.sphere(SIZE)[1]]))
+
+
+# ---- Modes -----------------------------------------------------------------------------------------------------------
+
+
+def _inputs(name: str) -> list:
+    """Inputs of a term's function, always the same: directions where the highlight is, cosines down to grazing."""
+    random = np.random.default_rng(1)
+    roughness = 10 ** random.uniform(-2.5, 0, COUNT)
+    if name == "decode":
+        return [np.repeat(CODES[:, None] / 255, 3, 1)]
+    if name == "F":
+        return [random.uniform(0.02, 1, (COUNT, 3)), random.uniform(0, 1, COUNT)]
+    NoL, NoV = 10 ** random.uniform(-3, 0, (2, COUNT))
+    if name == "V":
+        return [NoL, NoV, np.cos((np.arccos(NoL) + np.arccos(NoV)) / 2), roughness**2]
+    if name == "multi":
+        return [random.uniform(0.02, 1, (COUNT, 3)), NoV, roughness]
+    n, across = (_unit(random.standard_normal((COUNT, 3))) for _ in range(2))
+    u = random.uniform(0, 0.99, COUNT)[:, None]
+    h = _unit(n + roughness[:, None] ** 2 * np.sqrt(u / (1 - u)) * _unit(np.cross(n, across)))
+    v = _unit(h * random.uniform(0.05, 1, COUNT)[:, None] + 0.5 * _unit(np.cross(h, random.standard_normal((COUNT, 3)))))
+    l = 2 * (v * h).sum(-1, keepdims=True) * h - v  # noqa: E741
+    if name == "D":
+        return [l, v, n, roughness**2]
+    return [l, v, n, {"albedo": random.uniform(0, 1, (COUNT, 3)), "metalness": 0.0, "roughness": roughness}]
+
+
+def _unit(a: np.ndarray) -> np.ndarray:
+    return a / np.linalg.norm(a, axis=-1, keepdims=True)
+
+
+def _rounded(value, kind):
+    if isinstance(value, dict):
+        return {name: _rounded(item, kind) for name, item in value.items()}
+    return np.asarray(value).astype(kind).astype(float)
+
+
+def lost(form: str, mode: str) -> float:
+    """The share of the inputs of a term where a form is not finite, or more than 1 % off what it is in double; in
+    double, more than 1 % off the form that is exact."""
+    of = TERM_OF[form]
+    inputs = [_rounded(value, np.float16 if mode == "mediump" else np.float32) for value in _inputs(of.name)]
+    reference = term(of.exact if mode == "double" else form, "double")(*inputs)
+    got = np.asarray(term(form, mode)(*inputs), float)
+    with np.errstate(invalid="ignore"):
+        fine = np.abs(got - reference) <= np.maximum(0.01 * np.abs(reference), HALF_NORMAL)
+    if fine.ndim > 1:
+        fine = fine.all(-1)
+    return float(np.mean(~fine))
+
+
+FAMILIES = {
+    measure.__name__: Family(measure)
+    for measure in (
+        *(highlight_error, highlight_broken, peak, visibility, visibility_off, dark_side),
+        *(fresnel, fresnel_ulp, fresnel_off, fresnel_off_at, furnace_most, furnace_least, reciprocity),
+        *(decode_off, code_off, codes_changed, darkest, shaded, dot_angle, hidden, lost),
+    )
+}
