@@ -34,14 +34,17 @@ def ratio(values: np.ndarray) -> np.ndarray:
     """Bytes of a map of ratios: grey where 1, the redder the larger, full at 2, the bluer the smaller, full at 1/2."""
     stops = np.rint(16 * np.clip(np.log2(values), -1, 1)) / 16
     more, less = np.maximum(stops, 0), np.maximum(-stops, 0)
-    channels = np.stack([0.75 + 0.25 * more - 0.75 * less, 0.75 - 0.75 * (more + less), 0.75 - 0.75 * more + 0.25 * less], -1)
+    channels = np.stack(
+        [0.75 + 0.25 * more - 0.75 * less, 0.75 - 0.75 * (more + less), 0.75 - 0.75 * more + 0.25 * less], -1
+    )
     return np.rint(255 * channels).astype(np.uint8)
 
 
-def graph(curve: np.ndarray, top: float, height: int = 96) -> np.ndarray:
-    """Bytes of a graph of a value for each column, filled to its zero line in the middle; it ends at +-top."""
-    rows = np.round(np.clip(np.asarray(curve, float) / top, -1, 1) * (height // 2 - 1)).astype(int)
-    level = height // 2 - np.arange(height)[:, None]
+def graph(curve: np.ndarray, top: float, height: int = 96, signed: bool = True) -> np.ndarray:
+    """Bytes of a graph of a value for each column, filled to its zero line: in the middle, or at the foot."""
+    zero = height // 2 if signed else height - 1
+    rows = np.round(np.clip(np.asarray(curve, float) / top, -1, 1) * (zero - 1)).astype(int)
+    level = zero - np.arange(height)[:, None]
     filled = np.where(rows > 0, (level > 0) & (level <= rows), (level < 0) & (level >= rows))
     out = np.full((height, len(rows), 3), 240, np.uint8)
     out[np.broadcast_to(level == 0, filled.shape)] = 120

@@ -10,7 +10,7 @@ from functools import cache
 
 import extreme_scenes as scenes
 import numpy as np
-from extreme_scenes import GREY, HALF, LIGHT, MODES, TERM_OF, VIEWER, close_up, model, term
+from extreme_scenes import GREY, LIGHT, MODES, TERM_OF, VIEWER, close_up, model, term
 
 from harness import ulp_difference
 
@@ -67,6 +67,23 @@ def peak(form: str, mode: str, roughness: str, length: str = "1") -> float:
     return float(d) * np.pi * alpha**2
 
 
+def sine2(roughness: str) -> float:
+    """alpha^2: the square of the sine at which D has fallen to a quarter."""
+    return float(roughness) ** 4
+
+
+def true_peak(roughness: str) -> float:
+    """The peak of D, 1/(pi alpha^2)."""
+    return 1 / (np.pi * float(roughness) ** 4)
+
+
+def brightest(form: str, mode: str) -> float:
+    """The largest roughness, in thousandths, at which D at h = n is not below 65504, the largest half."""
+    roughness = np.arange(1, 1001) / 1000
+    d = term(form, mode)(VIEWER, VIEWER, VIEWER, roughness**2)
+    return float(roughness[~(np.asarray(d, float) < 65504)].max(initial=0))
+
+
 # ---- Visibility ------------------------------------------------------------------------------------------------------
 
 
@@ -74,6 +91,11 @@ def visibility(form: str, mode: str, NoL: str, NoV: str, alpha: str) -> float:
     """V at two cosines, with l and v on opposite sides of the normal."""
     i, o = float(NoL), float(NoV)
     return float(term(form, mode)(i, o, np.cos((np.arccos(i) + np.arccos(o)) / 2), float(alpha)))
+
+
+def visibility_ratio(form: str, mode: str, NoL: str, NoV: str, alpha: str) -> float:
+    """V there as a multiple of the exact V."""
+    return visibility(form, mode, NoL, NoV, alpha) / visibility("V_EXACT", "double", NoL, NoV, alpha)
 
 
 def visibility_off(form: str, mode: str, roughness: str) -> float:
@@ -95,6 +117,8 @@ def dark_side(mode: str, roughness: str, *forms: str) -> float:
 # ---- Fresnel ---------------------------------------------------------------------------------------------------------
 
 COSINES = np.linspace(0, 1, 1001, dtype=np.float32)
+#: from far to near 1, evenly in the logarithm of 1 - l.h
+NEAR_ONE = (1 - 2.0 ** -np.linspace(0, 18, 512)).astype(np.float32)
 
 
 def fresnel(form: str, mode: str, F0: str, LoH: str) -> float:
@@ -103,10 +127,9 @@ def fresnel(form: str, mode: str, F0: str, LoH: str) -> float:
 
 
 def fresnel_error(form: str, mode: str) -> np.ndarray:
-    """Error of F in units in the last place, over COSINES, where F0 is 0: that of the power alone."""
-    exact = term(form, "double")([0.0] * 3, COSINES)[..., 0]
-    got = term(form, mode)([0.0] * 3, COSINES)[..., 0]
-    return np.where(exact > 1e-30, ulp_difference(got, exact), 0)
+    """Error of F in units in the last place, over NEAR_ONE, where F0 is 0: that of the power alone."""
+    exact = term(form, "double")([0.0] * 3, NEAR_ONE)[..., 0]
+    return ulp_difference(term(form, mode)([0.0] * 3, NEAR_ONE)[..., 0], exact)
 
 
 def fresnel_ulp(form: str, mode: str) -> float:
@@ -249,7 +272,9 @@ def _inputs(name: str) -> list:
     n, across = (_unit(random.standard_normal((COUNT, 3))) for _ in range(2))
     u = random.uniform(0, 0.99, COUNT)[:, None]
     h = _unit(n + roughness[:, None] ** 2 * np.sqrt(u / (1 - u)) * _unit(np.cross(n, across)))
-    v = _unit(h * random.uniform(0.05, 1, COUNT)[:, None] + 0.5 * _unit(np.cross(h, random.standard_normal((COUNT, 3)))))
+    v = _unit(
+        h * random.uniform(0.05, 1, COUNT)[:, None] + 0.5 * _unit(np.cross(h, random.standard_normal((COUNT, 3))))
+    )
     l = 2 * (v * h).sum(-1, keepdims=True) * h - v  # noqa: E741
     if name == "D":
         return [l, v, n, roughness**2]
@@ -283,7 +308,7 @@ def lost(form: str, mode: str) -> float:
 FAMILIES = {
     measure.__name__: Family(measure)
     for measure in (
-        *(highlight_error, highlight_broken, peak, visibility, visibility_off, dark_side),
+        *(highlight_error, highlight_broken, peak, true_peak, sine2, brightest, visibility, visibility_ratio, visibility_off, dark_side),
         *(fresnel, fresnel_ulp, fresnel_off, fresnel_off_at, furnace_most, furnace_least, reciprocity),
         *(decode_off, code_off, codes_changed, darkest, shaded, dot_angle, hidden, lost),
     )

@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 from extreme_drawing import Tile, graph, radiance, ratio
-from extreme_numbers import COSINES, CODES, code_error, exchanged, fresnel_deviation, fresnel_error, on_the_way
+from extreme_numbers import CODES, code_error, exchanged, fresnel_deviation, fresnel_error, on_the_way
+from extreme_scenes import COSINES as FURNACE_COSINES
 from extreme_scenes import (
     GREY,
-    HALF,
     LIGHT,
-    METAL,
     TERMS,
     VIEWER,
     close_up,
@@ -23,7 +22,6 @@ from extreme_scenes import (
     sphere,
     term,
 )
-from extreme_scenes import COSINES as FURNACE_COSINES
 
 SIZE = 128
 Rows = list[list[Tile]]
@@ -36,12 +34,12 @@ def _values(form: str) -> list[str]:
 def _highlight(form: str, mode: str, roughness: float, length: float = 1.0, size: int = SIZE) -> Tile:
     alpha = roughness**2
     d = term(form, mode)(LIGHT, VIEWER, close_up(3 * alpha, size) * length, alpha)
-    return f"{form}  {roughness:g}", radiance(d, np.pi * alpha**2)
+    return f"{form} r={roughness:g}", radiance(d, np.pi * alpha**2)
 
 
-def _sphere(label: str, mode: str, roughness: float, *forms: str, function: str = "shade", light=LIGHT) -> Tile:
-    n, inside = sphere(SIZE)
-    values = model(function, mode, *forms)(light, VIEWER, n, {**GREY, "roughness": roughness})[..., 0]
+def _sphere(label: str, mode: str, roughness: float, *forms: str, function: str = "shade", size: int = SIZE) -> Tile:
+    n, inside = sphere(size)
+    values = model(function, mode, *forms)(LIGHT, VIEWER, n, {**GREY, "roughness": roughness})[..., 0]
     return label, radiance(values, 4, inside)
 
 
@@ -83,8 +81,12 @@ def rounding() -> Rows:
 
 def half() -> Rows:
     """The highlight in half precision."""
-    forms = ("D_EXERCISE", "D_ONE_MINUS", "D_CROSS", "D_PROJECT", "D_HALF")
-    return [[_highlight(form, "mediump", r, size=112) for form in forms] for r in (0.2, 0.1, 0.05)]
+    forms = ("D_EXERCISE", "D_ONE_MINUS", "D_PROJECT", "D_CROSS", "D_HALF")
+
+    def default(r):
+        return f"default, float r={r:g}", _highlight("D_CROSS", "as-written", r, size=112)[1]
+
+    return [[*(_highlight(form, "mediump", r, size=112) for form in forms), default(r)] for r in (0.2, 0.1, 0.05)]
 
 
 def short() -> Rows:
@@ -100,33 +102,37 @@ def capped() -> Rows:
 
 def unlit() -> Rows:
     """The unlit side in half precision at roughness 0, by each V."""
-    tiles = [_sphere(form, "mediump", 0, form, "D_HALF") for form in _values("V")]
-    return [tiles[:3] + [_sphere("default, float", "as-written", 0)], tiles[3:]]
+    tiles = [_sphere(form, "mediump", 0, form, "D_HALF", size=112) for form in _values("V")]
+    return [[*tiles, _sphere("default, float", "as-written", 0, size=112)]]
 
 
 def shadowing() -> Rows:
-    """V as a multiple of the exact V, n.l from left to right and n.v from below upward."""
+    """V as a multiple of the exact V, n.l rightward and n.v upward."""
     NoL, NoV, LoH = cosines(112)
 
     def tile(form, roughness):
         exact = term("V_EXACT", "double")(NoL, NoV, LoH, roughness**2)
-        return f"{form}  {roughness:g}", ratio(term(form, "as-written")(NoL, NoV, LoH, roughness**2) / exact)
+        return f"{form} r={roughness:g}", ratio(term(form, "as-written")(NoL, NoV, LoH, roughness**2) / exact)
 
     forms = [form for form in _values("V") if form != "V_EXACT"]
     return [[tile(form, r) for form in forms] for r in (0.2, 0.5, 1.0)]
 
 
 def power() -> Rows:
-    """Errors of (1 - l.h)^5 over l.h, in units in the last place."""
-    forms = ("F_POW", "F_GAUSSIAN", "F_MULTIPLY")
-    return [[(f"{form}  0...24 ulp", graph(fresnel_error(form, "precise")[1::4], 24)) for form in forms]]
+    """Errors of (1 - l.h)^5 in units in the last place, over the logarithm of 1 - l.h, from 1 down to 2^-18."""
+
+    def tile(form):
+        error = fresnel_error(form, "as-written").reshape(-1, 2).max(1)
+        return f"{form}: 0 to 100 ulp", graph(error, 100, signed=False)
+
+    return [[tile(form) for form in ("F_POW", "F_MULTIPLY")]]
 
 
-def fresnel_error_to_exact() -> Rows:
+def schlick() -> Rows:
     """Relative deviation of F of a dielectric from the exact one, over l.h."""
 
     def tile(form):
-        return f"{form}  +-25 %", graph(fresnel_deviation(form, "double", 0.04, "F_DIELECTRIC")[::4], 0.25)
+        return f"{form}: -25 to +25 %", graph(fresnel_deviation(form, "double", 0.04, "F_DIELECTRIC")[::4], 0.25)
 
     return [[tile(form) for form in ("F_MULTIPLY", "F_GAUSSIAN", "F_DIELECTRIC")]]
 
@@ -139,69 +145,58 @@ def step() -> Rows:
     return [[(form, radiance(term(form, "as-written")(F0, LoH)[..., 0], 4)) for form in forms]]
 
 
-def _furnace(label: str, roughness: float, metal: bool, *forms: str) -> Tile:
+def _furnace(roughness: float, metal: bool, form: str) -> np.ndarray:
+    """What a white sphere returns in a white furnace, which is 1 around it."""
     n, inside = sphere(SIZE)
-    returned = np.interp(n[..., 2], FURNACE_COSINES, furnace(forms, roughness, metal))
-    return label, radiance(np.where(inside, returned, 1.0), 0.5)
+    return np.where(inside, np.interp(n[..., 2], FURNACE_COSINES, furnace((form,), roughness, metal)), 1.0)
 
 
 def tint() -> Rows:
     """A white metal in a white furnace."""
-    return [[_furnace(f"{form}  0.1", 0.1, True, form) for form in ("F_F82", "F_MULTIPLY")]]
+    return [[(f"{form} r=0.1", ratio(_furnace(0.1, True, form))) for form in ("F_F82", "F_MULTIPLY")]]
 
 
 def dielectric_furnace() -> Rows:
     """A white dielectric in a white furnace, by each diffuse form."""
-    tiles = [_furnace(form.removeprefix("DIFFUSE_") + "  0.3", 0.3, False, form) for form in _values("diffuse")]
+    tiles = [(f"{form} r=0.3", ratio(_furnace(0.3, False, form))) for form in _values("diffuse")]
     return [tiles[:4], tiles[4:]]
 
 
 def metal_furnace() -> Rows:
     """A white metal in a white furnace, with and without what is reflected more than once."""
     roughness = (0.3, 0.6, 1.0)
-    return [[_furnace(f"{form}  {r:g}", r, True, form) for r in roughness] for form in _values("multi")]
+    return [
+        [(f"{form} r={r:g}", radiance(_furnace(r, True, form), 0.5)) for r in roughness] for form in _values("multi")
+    ]
 
 
 def exchange() -> Rows:
-    """What goes from l to v as a multiple of what goes from v to l, n.l from left to right and n.v from below upward."""
+    """What goes from l to v as a multiple of what goes from v to l, n.l rightward and n.v upward."""
     return [
         [
             ("default", ratio(exchanged(0.3, "dielectric"))),
-            ("DIFFUSE_ENERGY  0.3", ratio(exchanged(0.3, "dielectric", "DIFFUSE_ENERGY"))),
-            ("MULTI_FITTED  1", ratio(exchanged(1.0, "metal", "MULTI_FITTED"))),
+            ("DIFFUSE_ENERGY r=0.3", ratio(exchanged(0.3, "dielectric", "DIFFUSE_ENERGY"))),
+            ("MULTI_FITTED r=1", ratio(exchanged(1.0, "metal", "MULTI_FITTED"))),
         ]
     ]
 
 
 def decoding() -> Rows:
-    """The 256 codes and by how many each is off; the upper half of the ramp is by the form, the lower by the standard."""
+    """The 256 codes and by how many each is off; the upper half of a ramp is by the form, the lower as it was."""
 
     def tile(form):
         error = code_error(form, "as-written")
         ramp = np.repeat(np.stack([np.clip(CODES + error, 0, 255), CODES]), 16, 0).astype(np.uint8)
-        return f"{form}  +-10 codes", np.concatenate([np.repeat(ramp[..., None], 3, -1), graph(error, 10, 84)])
+        return f"{form}: -10 to +10 codes", np.concatenate([np.repeat(ramp[..., None], 3, -1), graph(error, 10, 84)])
 
     forms = _values("decode")
     return [[tile(form) for form in forms[:2]], [tile(form) for form in forms[2:]]]
 
 
-def grazing() -> Rows:
-    """A rough white metal, lit from behind and above, by each V."""
-    n, inside = sphere(SIZE)
-    light = np.array([0.0, 0.6, -0.8])
-
-    def tile(form):
-        values = model("shade", "as-written", form)(light, VIEWER, n, {**METAL, "roughness": 0.5})[..., 0]
-        return f"{form}  0.5", radiance(values, 1, inside)
-
-    tiles = [tile(form) for form in _values("V")]
-    return [tiles]
-
-
 PICTURES = {
     make.__name__: make
     for make in (
-        *(zero, opposite, rounding, half, short, capped, unlit, shadowing, grazing, power, fresnel_error_to_exact),
+        *(zero, opposite, rounding, half, short, capped, unlit, shadowing, power, schlick),
         *(step, tint, dielectric_furnace, metal_furnace, exchange, decoding),
     )
 }
