@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 NATIVE := $(wildcard harness/native/*.c harness/native/*.h harness/native/cost/*.[ch]) CMakeLists.txt
 SANITIZED := build/sanitize
-BRDF_TESTS := $(wildcard tests/shaders/test_brdf_*.py tests/shaders/test_shade*.py) tests/shaders/test_energy.py
+BRDF_TESTS := $(wildcard tests/shaders/test_brdf_*.py tests/shaders/test_shade*.py tests/shaders/test_energy*.py)
 
 PIP = $(BIN)/python -m pip install --quiet --disable-pip-version-check
 EXTRA = import sys, tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"][sys.argv[1]], sep="\n")
@@ -42,7 +42,7 @@ test-backends: $(VENV)/.harness $(VENV)/.test ## all tests by EGL, and by GLFW o
 test-mutation: $(VENV)/.harness $(VENV)/.test ## whether the tests notice faults that are put into the shaders
 	$(BIN)/harness mutate shaders/color.glsl --tests tests/shaders/test_color.py
 	$(BIN)/harness mutate shaders/normal_map.glsl --tests tests/shaders/test_normal_map.py
-	$(BIN)/harness mutate shaders/brdf.glsl --tests $(BRDF_TESTS)
+	for file in brdf rungs energy ladder; do $(BIN)/harness mutate shaders/$$file.glsl --tests $(BRDF_TESTS) || exit; done
 
 test-sanitize: $(VENV)/bin/python ## the C library under AddressSanitizer and UBSan
 	cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_BUILD_TYPE=Debug -DHARNESS_TESTS=ON -DHARNESS_SANITIZE=ON

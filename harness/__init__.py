@@ -20,6 +20,7 @@ _PUBLIC = {
         "DomainError",
         "GlslError",
         "HarnessError",
+        "LadderError",
         "NativeError",
         "ProjectError",
     ),

@@ -9,7 +9,7 @@
 #define SRGB_POWER 0     // c^2.2, the exercise's: 0.0085
 #define SRGB_PIECEWISE 1 // the curve of IEC 61966-2-1: 0
 #define SRGB_CUBIC 2     // a polynomial without pow: 0.0017
-#define SRGB_SQUARE 3    // c^2: 0.042
+#define SRGB_SQUARE 3    // c^2: 0.0425
 #ifndef SRGB_DECODE
 #define SRGB_DECODE SRGB_POWER
 #endif

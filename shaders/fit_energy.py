@@ -2,9 +2,10 @@
 
     python shaders/fit_energy.py
 
-E(mu, roughness) is the albedo of single-scattering GGX with F = 1 toward a cosine mu, and w the mean of (1 - l.h)^5 over
-what it reflects. Fitted are q = (1 - E)/E, where the error counts that it leaves in a white furnace, E (1 + q) - 1, and
-the cosine c with (1 - c)^5 = w, where the error counts that it leaves in the albedo of a dielectric, E (0.04 + 0.96 w).
+E(mu, roughness) is the albedo of single-scattering GGX with F = 1 toward a cosine mu, and w the mean of (1 - l.h)^5
+over what it reflects. Fitted are q = (1 - E)/E, where the error counts that it leaves in a white furnace,
+E (1 + q) - 1, and the cosine c with (1 - c)^5 = w, where the error counts that it leaves in the albedo of a
+dielectric, E (0.04 + 0.96 w).
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ def gauss(n: int, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def albedo(mu: float, roughness: float) -> tuple[float, float]:
-    """E and E w, by integration over the normals h of microfacets: theta from n, t = tan(theta) = a tan(u), azimuth phi."""
+    """E and E w, integrated over the normals h of microfacets: theta from n, t = tan(theta) = a tan(u), azimuth phi."""
     a = roughness**2
     phi, w_phi = gauss(NODES, 0, math.pi)
     across = math.sqrt(1 - mu * mu) * np.cos(phi)

@@ -41,6 +41,10 @@ def decode_power(c):
     return mp.mpf(float(c)) ** mp.mpf("2.2")
 
 
+def decode_square(c):
+    return mp.mpf(float(c)) ** 2
+
+
 def decode_cubic(c):
     """The polynomial of the comment, at the coefficients it states."""
     c = mp.mpf(float(c))
@@ -51,6 +55,7 @@ RUNGS = {
     "SRGB_POWER": (decode_power, POW_ULP),
     "SRGB_PIECEWISE": (decode_exact, POW_ULP),
     "SRGB_CUBIC": (decode_cubic, 6),  # six roundings, nothing cancels
+    "SRGB_SQUARE": (decode_square, 1),
 }
 
 
@@ -69,7 +74,7 @@ def test_the_exercises_power_is_the_default(library):
     )
 
 
-@pytest.mark.parametrize(("rung", "stated"), [("SRGB_POWER", 0.0085), ("SRGB_CUBIC", 0.0017)])
+@pytest.mark.parametrize(("rung", "stated"), [("SRGB_POWER", 0.0085), ("SRGB_CUBIC", 0.0017), ("SRGB_SQUARE", 0.0425)])
 def test_a_decoding_is_as_wrong_as_its_comment_says(library, rung, stated):
     sweep = np.linspace(0, 1, 2001, dtype=np.float32)
     got = library("color.glsl", SRGB_DECODE=rung).srgb_to_linear(grey(sweep))[:, 0]

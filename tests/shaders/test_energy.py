@@ -49,15 +49,15 @@ def viewer(cosine):
     return v, math.atan2(v[1], v[0])
 
 
-def reflected(shade, cosine, roughness, material):
+def reflected(shade, cosine, roughness, material, nodes=NODES):
     """The integral of shade over l by way of h, for a lobe as narrow as the roughness says."""
     v, azimuth = viewer(cosine)
-    phi, w_phi = gauss(NODES, 0, math.pi)
+    phi, w_phi = gauss(nodes, 0, math.pi)
     a = roughness**2
     along = math.sqrt(1 - cosine**2) * np.cos(phi)
     t_end = (along + np.sqrt(along**2 + cosine**2)) / cosine
     # u = atan(t/a) spreads the lobe, which is 1/(a^2 + t^2)^2, evenly
-    u, w_u = gauss(NODES, 0, 1)
+    u, w_u = gauss(nodes, 0, 1)
     end = np.arctan(t_end / a)[:, None]
     t = a * np.tan(end * u)
     dt = a * (1 + (t / a) ** 2) * end

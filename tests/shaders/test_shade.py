@@ -99,19 +99,9 @@ def test_both_arrangements_agree_where_both_have_digits(library, mode, function)
 
 # ---- Every input -----------------------------------------------------------------------------------------------------
 
-RUNGS = [
-    {},
-    {"BRDF_V": "V_HAMMON"},
-    {"BRDF_F": "F_POW"},
-    {"BRDF_DIFFUSE": "DIFFUSE_LAMBERT"},
-    {"BRDF_D": "D_EXERCISE"},
-    {"BRDF_D": "D_EXERCISE", "BRDF_V": "V_HAMMON"},
-]
 
-
-@pytest.mark.parametrize("rung", RUNGS, ids=lambda r: "-".join(r.values()) or "default")
-def test_shade_is_finite_and_not_negative_on_every_rung(library, mode, rung):
-    got = library("brdf.glsl", mode, **rung).shade(*extremes(500_000, seed=len(str(rung))))
+def test_shade_is_finite_and_not_negative(library, mode):
+    got = library("brdf.glsl", mode).shade(*extremes(500_000, seed=2))
     assert np.isfinite(got).all()
     assert (got >= 0).all()
 
@@ -149,14 +139,13 @@ def test_a_highlight_grows_as_the_model_says_until_float_ends(library, mode):
     np.testing.assert_allclose(got, share / (4 * np.pi * alpha2), rtol=12 * U, atol=0)
 
 
-@pytest.mark.parametrize("rung", RUNGS, ids=lambda r: "-".join(r.values()) or "default")
-def test_where_the_model_is_beyond_all_floats_shade_is_a_number(library, mode, rung):
+def test_where_the_model_is_beyond_all_floats_shade_is_a_number(library, mode):
     """A white metal, h = n, at both horizons with unequal cosines: F is 1, and D V has no limit as alpha goes to 0."""
     cosines = [10.0**-k for k in (4, 5, 6, 7, 8, 10, 13, 20, 37)]
     cos_l, cos_v, roughness = np.meshgrid(cosines, cosines, 10 ** np.linspace(-12, -2, 81), indexing="ij")
     l, v = (np.stack(np.broadcast_arrays(x, y, c), -1) for x, y, c in ((0.6, 0.8, cos_l), (-0.6, -0.8, cos_v)))  # noqa: E741
     metal = {"albedo": [1, 1, 1], "metalness": 1, "roughness": roughness}
-    got = library("brdf.glsl", mode, **rung).shade(l, v, [0, 0, 1], metal)
+    got = library("brdf.glsl", mode).shade(l, v, [0, 0, 1], metal)
     assert np.isfinite(got).all()
     assert got.min() >= 0
     white = reference.Material((1.0, 1.0, 1.0), 1.0, 1e-8)
