@@ -193,10 +193,8 @@ def decoding() -> Rows:
     return [[tile(form) for form in forms[:2]], [tile(form) for form in forms[2:]]]
 
 
-PICTURES = {
-    make.__name__: make
-    for make in (
-        *(zero, opposite, rounding, half, short, capped, unlit, shadowing, power, schlick),
-        *(step, tint, dielectric_furnace, metal_furnace, exchange, decoding),
-    )
-}
+_MAKERS = [
+    *(zero, opposite, rounding, half, short, capped, unlit, shadowing, power, schlick),
+    *(step, tint, dielectric_furnace, metal_furnace, exchange, decoding),
+]
+PICTURES = {make.__name__: make for make in _MAKERS}

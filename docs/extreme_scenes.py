@@ -96,7 +96,7 @@ def opposite(NoL: np.ndarray, NoV: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 # ---- A white furnace -------------------------------------------------------------------------------------------------
 
-NODES = 96
+NODES = 64
 COSINES = np.concatenate([[0.01, 0.03], np.linspace(0.06, 1, 30)])
 
 
@@ -106,14 +106,11 @@ def furnace(forms: tuple[str, ...], roughness: float, metal: bool) -> np.ndarray
 
     The highlight is integrated over the half vector, its tangent spread as GGX is, and the diffuse part over l.
     """
-    shade = model("shade", "precise", *forms)
-    of = METAL if metal else BLACK
-    sums = np.array([_highlight(shade, mu, {**of, "roughness": roughness}) for mu in COSINES])
+    returned = _highlight(model("shade", "precise", *forms), {**(METAL if metal else BLACK), "roughness": roughness})
     if not metal:
-        chosen = [form for form in forms if TERM_OF[form].name == "diffuse"]
-        scatter = term(chosen[0] if chosen else TERMS["diffuse"].exact, "precise")
-        sums += [_diffuse(scatter, mu, {**WHITE, "roughness": roughness}) for mu in COSINES]
-    return sums
+        chosen = [form for form in forms if TERM_OF[form].name == "diffuse"] or [TERMS["diffuse"].exact]
+        returned = returned + _diffuse(term(chosen[0], "precise"), {**WHITE, "roughness": roughness})
+    return returned
 
 
 def _gauss(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
@@ -121,29 +118,35 @@ def _gauss(low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
     return low + (high - low) * (x + 1) / 2, w * (high - low) / 2
 
 
-def _highlight(shade, mu: float, material: dict) -> float:
-    """As tests/shaders/test_energy.py: dl = 4 (v.h) dh, and t = tan(theta) ends where l meets the horizon."""
+def _viewers() -> tuple[np.ndarray, np.ndarray]:
+    """Sines of the viewers' angles, and the viewers, over (cosine, azimuth, angle)."""
+    sine = np.sqrt(1 - COSINES**2)
+    return sine[:, None], np.stack([sine, np.zeros_like(sine), COSINES], -1)[:, None, None]
+
+
+def _highlight(shade: harness.Function, material: dict) -> np.ndarray:
+    """As in tests/shaders/test_energy.py: dl = 4 (v.h) dh, and t = tan(theta) ends where l meets the horizon."""
     a = material["roughness"] ** 2
+    sine_v, v = _viewers()
     phi, w_phi = _gauss(0, math.pi)
-    across = math.sqrt(1 - mu * mu) * np.cos(phi)
-    end = np.arctan((across + np.sqrt(across**2 + mu**2)) / mu / a)[:, None]
+    across = sine_v * np.cos(phi)
+    end = np.arctan((across + np.sqrt(across**2 + COSINES[:, None] ** 2)) / COSINES[:, None] / a)[..., None]
     u, w_u = _gauss(0, 1)
     t = a * np.tan(end * u)
     cosine = 1 / np.sqrt(1 + t * t)
-    v = np.array([math.sqrt(1 - mu * mu), 0, mu])
     sine = t * cosine
     h = np.stack([sine * np.cos(phi)[:, None], sine * np.sin(phi)[:, None], cosine], -1)
-    v_h = h @ v
+    v_h = (h * v).sum(-1)
     values = shade(2 * v_h[..., None] * h - v, v, VIEWER, material)[..., 0].astype(float)
     weight = 4 * v_h * t * cosine**3 * a * (1 + (t / a) ** 2) * end
-    return 2 * float(w_phi @ (values * weight @ w_u))
+    return 2 * (values * weight @ w_u) @ w_phi
 
 
-def _diffuse(scatter, mu: float, material: dict) -> float:
+def _diffuse(scatter: harness.Function, material: dict) -> np.ndarray:
     NoL, w_mu = _gauss(0, 1)
     phi, w_phi = _gauss(0, math.pi)
     sine = np.sqrt(1 - NoL**2)
     x, y = sine * np.cos(phi)[:, None], sine * np.sin(phi)[:, None]
     l = np.stack(np.broadcast_arrays(x, y, NoL), -1)  # noqa: E741
-    values = scatter(l, [math.sqrt(1 - mu * mu), 0, mu], VIEWER, material)[..., 0].astype(float)
-    return 2 * float(w_phi @ (values * NoL @ w_mu))
+    values = scatter(l, _viewers()[1], VIEWER, material)[..., 0].astype(float)
+    return 2 * (values * NoL @ w_mu) @ w_phi

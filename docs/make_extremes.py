@@ -21,8 +21,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from extreme_drawing import png
-from extreme_numbers import COUNT, FAMILIES
+from extreme_numbers import FAMILIES
 from extreme_pictures import PICTURES
+from extreme_precision import COUNT
 from extreme_scenes import MODES, TERMS
 
 from harness import HarnessError
@@ -30,6 +31,11 @@ from harness import HarnessError
 FOLDER = Path(__file__).resolve().parent
 DOCUMENT = "extremes.md"
 TEXTS = tomllib.loads((FOLDER / "extremes.toml").read_text(encoding="utf-8"))
+PRECISION = """\
+The share of {} inputs (of the 256 codes, for the decodings) where the term by itself is more than 1 % off its own \
+formula in double, or not finite; inputs rounded to half first for `mediump`. Directions are where the highlight is, \
+roughness from 0.003 to 1 evenly in its logarithm, cosines from 0.001 likewise. The last column: formula against \
+formula, both in double, where a form is more than 1 % off the one that the ladder calls exact."""
 WIDTH = 120
 
 
@@ -64,12 +70,7 @@ def _forms() -> str:
 
 def _precisions() -> Iterator[str]:
     yield "## By precision"
-    yield (
-        f"The share of {COUNT} inputs (of the 256 codes, for the decodings) where the term by itself is more than 1 % off"
-        " its own formula in double, or not finite; inputs rounded to half first for `mediump`. Directions are where the"
-        " highlight is, roughness from 0.003 to 1 evenly in its logarithm, cosines from 0.001 likewise. The last column:"
-        " formula against formula, both in double, where a form is more than 1 % off the one that the ladder calls exact."
-    )
+    yield PRECISION.format(COUNT)
     rows = []
     for term in TERMS.values():
         for rung in term.rungs:
@@ -93,11 +94,13 @@ def blocks() -> Iterator[str]:
 
 def document() -> str:
     """All of it, measured now."""
-    filled = [block.format_map(FAMILIES) for block in blocks()]
-    return "\n\n".join(block if block[0] in "#|!" else textwrap.fill(block, WIDTH, **_WHOLE) for block in filled) + "\n"
+    return "\n\n".join(_wrapped(block.format_map(FAMILIES)) for block in blocks()) + "\n"
 
 
-_WHOLE = {"break_long_words": False, "break_on_hyphens": False}
+def _wrapped(block: str) -> str:
+    if block.startswith(("#", "![", "| ")):
+        return block
+    return textwrap.fill(block, WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
 def printed(text: str) -> list[Printed]:
@@ -108,7 +111,7 @@ def printed(text: str) -> list[Printed]:
         if field is not None:
             family, words = field.removesuffix("]").split("[")
             asked.append((family, words, form))
-            pattern += r"(\S+?)"
+            pattern += r"(\S+?) %" if form.endswith("%") else r"(\S+?)"
     found = re.fullmatch(pattern, _even(text))
     if not found:
         raise ValueError("its text is not that of extremes.toml; make extremes makes it anew")
