@@ -30,9 +30,9 @@ def radiance(values: np.ndarray, exposure: float, inside: np.ndarray | None = No
     return np.where(bad[..., None], np.array(MAGENTA, np.uint8), grey[..., None])
 
 
-def ratio(values: np.ndarray) -> np.ndarray:
-    """Bytes of a map of ratios: grey where 1, the redder the larger, full at 2, the bluer the smaller, full at 1/2."""
-    stops = np.rint(16 * np.clip(np.log2(values), -1, 1)) / 16
+def ratio(values: np.ndarray, full: float = 2.0) -> np.ndarray:
+    """Bytes of a map of ratios: grey where 1, the redder the larger up to ``full``, the bluer the smaller to 1/full."""
+    stops = np.rint(16 * np.clip(np.log(values) / np.log(full), -1, 1)) / 16
     more, less = np.maximum(stops, 0), np.maximum(-stops, 0)
     channels = np.stack(
         [0.75 + 0.25 * more - 0.75 * less, 0.75 - 0.75 * (more + less), 0.75 - 0.75 * more + 0.25 * less], -1

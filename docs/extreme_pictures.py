@@ -153,12 +153,12 @@ def _furnace(roughness: float, metal: bool, form: str) -> np.ndarray:
 
 def tint() -> Rows:
     """A white metal in a white furnace."""
-    return [[(f"{form} r=0.1", ratio(_furnace(0.1, True, form))) for form in ("F_F82", "F_MULTIPLY")]]
+    return [[(f"{form} r=0.1", ratio(_furnace(0.1, True, form), 1.25)) for form in ("F_F82", "F_MULTIPLY")]]
 
 
 def dielectric_furnace() -> Rows:
     """A white dielectric in a white furnace, by each diffuse form."""
-    tiles = [(f"{form} r=0.3", ratio(_furnace(0.3, False, form))) for form in _values("diffuse")]
+    tiles = [(f"{form} r=0.3", ratio(_furnace(0.3, False, form), 1.25)) for form in _values("diffuse")]
     return [tiles[:4], tiles[4:]]
 
 
@@ -174,9 +174,9 @@ def exchange() -> Rows:
     """What goes from l to v as a multiple of what goes from v to l, n.l rightward and n.v upward."""
     return [
         [
-            ("default", ratio(exchanged(0.3, "dielectric"))),
             ("DIFFUSE_ENERGY r=0.3", ratio(exchanged(0.3, "dielectric", "DIFFUSE_ENERGY"))),
             ("MULTI_FITTED r=1", ratio(exchanged(1.0, "metal", "MULTI_FITTED"))),
+            ("default r=0.3", ratio(exchanged(0.3, "dielectric"))),
         ]
     ]
 
