@@ -100,6 +100,7 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 //   6. 1 - F = (1 - B) - A a, and 1 - B = W - f = Z.
 //   7. With S = D V n.l and E = (1 - m) n.l/pi the sum S F + E (1 - F) a is (S A + E Z - E A a) a + S B. Z >= A, since
 //      Z - A = 0.96 (1 - m) W: it is not negative. All but a is the same for the three colours.
+// Other rungs put another k, V or w in their places, or scatter another share of the albedo; what adds up is the same.
 vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 {
     float alpha = m.roughness * m.roughness;

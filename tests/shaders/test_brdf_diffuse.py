@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ladder_reference
-import mpmath as mp
 import numpy as np
 import pytest
 from ladder_reference import FRESNEL
+from reference import mp  # at its 50 digits
 from rungs import BRDF
 
 from harness import assert_ulp

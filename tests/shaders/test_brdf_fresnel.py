@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ladder_reference
-import mpmath as mp
 import numpy as np
 import pytest
 from ladder_reference import FRESNEL
+from reference import mp  # at its 50 digits
 from rungs import BRDF
 
 from harness import assert_ulp
@@ -37,6 +37,12 @@ def test_of_a_metal_it_is_its_formula(library, mode, rung):
     want = FRESNEL[rung][0](f0.astype(float), c.astype(float)[:, None])
     assert_ulp(brdf.fresnel(f0, c), want, max_ulp=ULP[rung])
     assert_ulp(brdf.F_metal(f0, c), want, max_ulp=ULP[rung])
+
+
+def test_the_gaussian_is_karis(library, mode):
+    """The weight of white alone: a wrong sixth digit would be 60 ulp at 1. llvmpipe's exp2 is within 16."""
+    got = library("brdf.glsl", mode, BRDF_F="F_GAUSSIAN").schlick_weight(LOH)
+    assert_ulp(got, ladder_reference.gaussian(0, LOH.astype(float)), max_ulp=24)
 
 
 @pytest.mark.parametrize("rung", FRESNEL)

@@ -100,6 +100,22 @@ def test_fresnel_of_a_pure_material_is_that_of_its_F0(library):
             np.testing.assert_allclose(brdf.fresnel(F0, LoH), got, rtol=4 * U, atol=0)
 
 
+@pytest.mark.parametrize("rung", ["D_CROSS", "D_PROJECT", "D_HALF"])
+def test_a_sharp_highlight_is_its_formula_to_ulps(library, mode, rung):
+    """A black dielectric toward +z, where neither cross product nor projection rounds; h beside n by a little."""
+    random = np.random.default_rng(8)
+    cosine, azimuth = random.uniform(0.2, 1, 500), random.uniform(0, 2 * np.pi, 500)
+    apart = azimuth + np.pi + 10.0 ** random.uniform(-4, -2, 500)
+    sine = np.sqrt(1 - cosine**2)
+    l, v = (np.stack([sine * np.cos(a), sine * np.sin(a), cosine], -1) for a in (azimuth, apart))  # noqa: E741
+    zero = np.zeros(500, np.float32)
+    black, roughness = np.zeros((500, 3), np.float32), np.full(500, 0.07, np.float32)
+    inputs = np.float32(l), np.float32(v), np.tile(np.float32([0, 0, 1]), (500, 1)), black, zero, roughness
+    got = called(library("brdf.glsl", mode, BRDF_D=rung).shade, *inputs)
+    want = ladder_reference.shade(*(x.astype(float) for x in inputs), {**DEFAULT, "BRDF_D": rung})
+    np.testing.assert_allclose(got, want, rtol=60 * U, atol=0)
+
+
 # ---- Every input -----------------------------------------------------------------------------------------------------
 
 
