@@ -19,7 +19,7 @@ define install_extra
 endef
 
 .PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation fuzz bench cost trade \
-        trade-readme lint format build submission models textures clean
+        trade-readme lint format build submission models textures extremes clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -88,6 +88,9 @@ models: $(VENV)/.harness ## make models/*.glb again
 
 textures: $(VENV)/.harness ## make textures/*.png again
 	$(BIN)/python textures/make_textures.py
+
+extremes: $(VENV)/.harness ## measure docs/extremes.md, and draw its pictures again
+	$(BIN)/python docs/make_extremes.py
 
 clean: ## remove all that was built or installed here
 	rm -rf build $(VENV) .pytest_cache .ruff_cache
