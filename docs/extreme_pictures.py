@@ -75,7 +75,7 @@ def opposite() -> Rows:
 
 def rounding() -> Rows:
     """The highlight in float32, with no rewriting by the driver."""
-    forms = ("D_EXERCISE", "D_ONE_MINUS", "D_CROSS")
+    forms = ("D_EXERCISE", "D_ONE_MINUS", "D_PROJECT")
     return [[_highlight(form, "precise", r) for r in (0.1, 0.045, 0.02, 0.01)] for form in forms]
 
 
@@ -84,7 +84,7 @@ def half() -> Rows:
     forms = ("D_EXERCISE", "D_ONE_MINUS", "D_PROJECT", "D_CROSS", "D_HALF")
 
     def default(r):
-        return f"default, float r={r:g}", _highlight("D_CROSS", "as-written", r, size=112)[1]
+        return f"default, float r={r:g}", _highlight("D_PROJECT", "as-written", r, size=112)[1]
 
     return [[*(_highlight(form, "mediump", r, size=112) for form in forms), default(r)] for r in (0.2, 0.1, 0.05)]
 
@@ -97,7 +97,7 @@ def short() -> Rows:
 
 def capped() -> Rows:
     """The highlight up to 65504."""
-    return [[_highlight(form, "as-written", r) for r in (0.1, 0.045, 0.03, 0.02)] for form in ("D_HALF", "D_CROSS")]
+    return [[_highlight(form, "as-written", r) for r in (0.1, 0.045, 0.03, 0.02)] for form in ("D_HALF", "D_PROJECT")]
 
 
 def unlit() -> Rows:
