@@ -39,8 +39,11 @@ def run(work: Callable[[], int], seconds: float | None = SECONDS, memory_bytes: 
     What libraries print on stderr is held back until the end, and part of the error where one crashes.
 
     HarnessError when it takes longer than ``seconds`` (None: no limit) or ends by a signal, as crashes do, or when it
-    or a process that it starts needs more than ``memory_bytes``.
+    or a process that it starts needs more than ``memory_bytes``. RuntimeError in a process that holds a GL context.
     """
+    native = sys.modules.get("harness.native")
+    if native and native.context_is_open():
+        raise RuntimeError("a process that holds a GL context must not be forked: its child would wait for ever")
     sys.stdout.flush()
     sys.stderr.flush()
     with open(os.memfd_create("stderr"), "rb+", buffering=0) as said:

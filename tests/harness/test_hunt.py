@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import main
 
-from harness import DomainError, cli
+from harness import DomainError
 from harness.domain import Domain
 from harness.goals import Goal, Trial
 from harness.hunt import ISLAND, hunt
@@ -131,11 +132,6 @@ def glsl(tmp_path, monkeypatch):
     path = tmp_path / "shaders" / "it.glsl"
     path.write_text(TEXT + "float scaled(vec4 v, float x) { return dot(v, v) * FACTOR * x * (1.0 - x) - 0.5; }\n")
     return Path("shaders/it.glsl")
-
-
-def main(arguments):
-    """The command in this process, which may hold a GL context and must not be forked."""
-    return cli._reported(cli._parser().parse_args(arguments))
 
 
 DEFINE = ["-D", "FACTOR=1.0"]

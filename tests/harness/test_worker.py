@@ -122,3 +122,8 @@ def test_a_shader_that_takes_too_long_is_ended(root, tmp_path):
     done = subprocess.run([*command, "--time-limit", "1.5"], capture_output=True, text=True, cwd=tmp_path, timeout=60)
     assert done.returncode == 1
     assert "ran out of time after 1.5 s" in done.stderr
+
+
+def test_a_process_with_a_context_is_not_forked():
+    done = run("from harness import native; native.open_context(); worker.run(lambda: 0)")
+    assert "must not be forked" in done.stderr.splitlines()[-1]
