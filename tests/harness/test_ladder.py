@@ -7,9 +7,10 @@ import re
 import pytest
 from sprj_files import read, shader_pass, write_project
 
-from harness import LadderError, ladder, shader, sprj
-from harness.domain import samples
-from harness.glsl import VERSION, load
+from harness import LadderError, ladder, shader
+from harness.language.glsl import VERSION, load
+from harness.projects import sprj
+from harness.searching.domain import samples
 
 LADDER = """
 [[term]]

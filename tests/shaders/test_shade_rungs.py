@@ -12,7 +12,7 @@ from extremes import extremes
 from rungs import BRDF, DEFAULT, LADDER, PRESETS, SINGLE, name, pairs
 
 from harness import shader
-from harness.domain import samples
+from harness.searching.domain import samples
 
 U = 2.0**-24
 #: cosines are off by 3 U, against 0.1 at least; d of D, 1/16 at least here, by 9 U if it is from n.h, and twice into D;
