@@ -19,7 +19,7 @@ define install_extra
 endef
 
 .PHONY: help render test test-conformance test-backends test-sanitize test-exhaustive test-mutation fuzz bench cost trade \
-        trade-readme lint format build submission models textures clean
+        trade-readme lint format build submission models textures extremes clean
 
 help: ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 20
@@ -46,7 +46,7 @@ fuzz: $(VENV)/.harness ## whether spoilt projects are refused and never crash (a
 test-mutation: $(VENV)/.harness $(VENV)/.test ## whether the tests notice faults that are put into the shaders
 	$(BIN)/harness mutate shaders/color.glsl --tests tests/shaders/test_color.py
 	$(BIN)/harness mutate shaders/normal_map.glsl --tests tests/shaders/test_normal_map.py
-	for file in brdf rungs energy ladder; do $(BIN)/harness mutate shaders/$$file.glsl --tests $(BRDF_TESTS) || exit; done
+	for file in brdf half rungs energy ladder; do $(BIN)/harness mutate shaders/$$file.glsl --tests $(BRDF_TESTS) || exit; done
 
 test-sanitize: $(VENV)/bin/python ## the C library under AddressSanitizer and UBSan
 	cmake -S . -B $(SANITIZED) -G Ninja -DCMAKE_BUILD_TYPE=Debug -DHARNESS_TESTS=ON -DHARNESS_SANITIZE=ON
@@ -88,6 +88,9 @@ models: $(VENV)/.harness ## make models/*.glb again
 
 textures: $(VENV)/.harness ## make textures/*.png again
 	$(BIN)/python textures/make_textures.py
+
+extremes: $(VENV)/.harness ## measure docs/extremes.md, and draw its pictures again
+	$(BIN)/python docs/make_extremes.py
 
 clean: ## remove all that was built or installed here
 	rm -rf build $(VENV) .pytest_cache .ruff_cache

@@ -4,16 +4,21 @@ What is public is imported when it is first asked for: pytest loads our plugin i
 them have nothing to do with shaders, numpy or OpenGL.
 """
 
-import sys
 from importlib import import_module
-from types import ModuleType
 from typing import Any
 
 #: module -> the public names in it
 _PUBLIC = {
-    "call": ("shader",),
-    "compare": ("assert_close", "assert_finite", "assert_ulp", "elementwise", "error_budget", "ulp_difference"),
-    "domain": ("samples",),
+    "calling.call": ("shader",),
+    "comparing.compare": (
+        "assert_close",
+        "assert_finite",
+        "assert_ulp",
+        "elementwise",
+        "error_budget",
+        "ulp_difference",
+    ),
+    "searching.domain": ("samples",),
     "errors": (
         "CallError",
         "CompareError",
@@ -24,8 +29,8 @@ _PUBLIC = {
         "NativeError",
         "ProjectError",
     ),
-    "render": ("render", "render_floats"),
-    "texture_argument": ("Texture",),
+    "rendering.render": ("render", "render_floats"),
+    "calling.texture_argument": ("Texture",),
 }
 _HOMES = {name: module for module, names in _PUBLIC.items() for name in names}
 
@@ -40,12 +45,3 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return [*globals(), *__all__]
-
-
-class _Package(ModuleType):
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not (name in _HOMES and isinstance(value, ModuleType)):  # harness.render is the function, not its module
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package

@@ -8,9 +8,10 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
-from . import commands, worker
+from . import commands
 from .commands import _limits as limits
 from .errors import HarnessError
+from .processes import worker
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -20,7 +21,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not options.in_worker:
             return _reported(options)
         if getattr(options, "watch", False):
-            from .watch import follow
+            from .viewing.watch import follow
 
             follow(options.project, lambda: _in_worker_reported(options))
         return _in_worker(options)

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import jobs
+from .comparing.failure import number
+from .comparing.ulp import PRECISIONS, ulp_difference
 from .errors import CompareError, DomainError
-from .failure import number
-from .goals import goals
-from .inputs import named_leaves
-from .signature import Numeric
-from .spaces import Interval, from_ordered, ordered, space
-from .ulp import PRECISIONS, ulp_difference
+from .language.signature import Numeric
+from .processes import jobs
+from .searching.goals import goals
+from .searching.inputs import named_leaves
+from .searching.spaces import Interval, from_ordered, ordered, space
 
 if TYPE_CHECKING:
-    from .function import Function
+    from .calling.function import Function
 
 _CHUNK = 1 << 20  # values computed at once
 _SLICE = 1 << 24  # values of one piece of work

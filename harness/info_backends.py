@@ -20,12 +20,12 @@ import numpy as np
 from . import native
 from .errors import HarnessError
 from .native import gl_enums as gl
-from .process import Process, reply, result_of
-from .worker import MEMORY_BYTES
+from .processes.process import Process, reply, result_of
+from .processes.worker import MEMORY_BYTES
 
 if TYPE_CHECKING:
-    from .call import Shader
-    from .function import Function
+    from .calling.call import Shader
+    from .calling.function import Function
 
 SECONDS = 60.0
 
@@ -140,7 +140,7 @@ def _precision(number: int) -> str:
 
 
 def _measured() -> dict[str, str]:
-    from .call import shader
+    from .calling.call import shader
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "probes.glsl")

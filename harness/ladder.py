@@ -33,7 +33,7 @@ from pathlib import Path
 from typing import Any
 
 from .errors import LadderError, among
-from .project import Project, Shader
+from .projects.project import Project, Shader
 
 FILE = "ladder.toml"
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
-    from .call import Shader
-    from .golden import Golden
+    from .calling.call import Shader
+    from .comparing.golden import Golden
 
 BACKENDS = ("osmesa", "egl", "glfw")  # native.BACKENDS, which costs an import
 _BACKEND_VARIABLE = "HARNESS_BACKEND"  # native.BACKEND_VARIABLE, likewise
@@ -78,7 +78,7 @@ def _parametrized(metafunc: pytest.Metafunc) -> set[str]:
 
 
 def _modes(config: pytest.Config) -> list[str]:
-    from .dialect import MODES
+    from .language.dialect import MODES
 
     modes = [mode.strip() for mode in config.getoption("glsl_modes").split(",")]
     for mode in modes:
@@ -102,7 +102,7 @@ def shader(request: pytest.FixtureRequest, glsl_mode: str) -> Callable[..., Shad
     """
     import harness
 
-    from . import glsl
+    from .language import glsl
 
     config = request.config
     roots = config.getini("glsl_root")
@@ -131,7 +131,7 @@ def shader(request: pytest.FixtureRequest, glsl_mode: str) -> Callable[..., Shad
 
 def _found(path: Path, places: Sequence[Path]) -> Path:
     from .errors import GlslError
-    from .glsl import shown_path
+    from .language.glsl import shown_path
 
     found = next((place / path for place in places if (place / path).exists()), None)
     if found is None:
@@ -146,7 +146,7 @@ def golden(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Golden]:
 
     --update-golden writes it.
     """
-    from .golden import Golden
+    from .comparing.golden import Golden
 
     written = request.config.stash[_SESSION].written
     before = set(written)

@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .domain import RELATIONS, ROW, Domain
 from .errors import DomainError, HarnessError
-from .leaf import Leaf
-from .signature import Numeric
-from .spaces import SIMPLE, Interval, Space, space
+from .language.leaf import Leaf
+from .language.signature import Numeric
+from .searching.domain import RELATIONS, ROW, Domain
+from .searching.spaces import SIMPLE, Interval, Space, space
 
 if TYPE_CHECKING:
     from hypothesis.strategies import SearchStrategy
 
-    from .function import Function
+    from .calling.function import Function
 
 _NEAR = 256  # values near a simple one, itself the first
 _WHOLE = 4  # one in so many batches loses its end, or its beginning
@@ -36,7 +36,7 @@ _DIGITS = 23  # binary digits of a float32 after the first
 
 
 def batches(f: Function, domain: Mapping[str, Any], size: int = 1000) -> SearchStrategy[dict[str, Any]]:
-    """Batches of up to ``size`` inputs of ``f`` from a domain (harness/domain.py), as the keywords of a call.
+    """Batches of up to ``size`` inputs of ``f`` from a domain (harness/searching/domain.py), as the keywords of a call.
 
     DomainError, CallError when the domain does not suit the function.
     """

@@ -88,6 +88,61 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 
 // ---- The same model, for every input ---------------------------------------------------------------------------------
 
+// shade() below says what these are and how they are arrived at.
+struct Cosines {
+    float NoL; // 0...1, and so on
+    float NoV;
+    float c; // l.h
+    float c2;
+    float lit; // n.l/2pi, which is below 1; 0 for a viewer behind the surface
+};
+
+#if BRDF_D == D_HALF
+#include "half.glsl" // highlight() for half precision
+#else
+// S = D V n.l, steps 1 to 3 of shade().
+float highlight(vec3 l, vec3 v, vec3 n, float alpha, out Cosines g)
+{
+    float alpha2 = alpha * alpha + 1e-26; // so that k <= 5e12 and S < 1e38: nothing here leaves float's range
+    float NoL = clamp(dot(n, l), 0.0, 1.0);
+    float NoV = clamp(dot(n, v), 0.0, 1.0);
+    float behind = clamp(1.0 - 1e38 * NoV, 0.0, 1.0); // 1 where NoV is 0, the viewer behind the surface; else 0
+    float lit = clamp(NoL / (2.0 * PI) - behind, 0.0, 1.0);
+
+    vec3 H = 0.5 * (l + v);
+    float NoHH = 0.5 * (NoL + NoV); // n.H where it matters: with both cosines positive
+#if BRDF_D == D_PROJECT || BRDF_D == D_CROSS
+#if BRDF_D == D_CROSS
+    vec3 p = cross(n, H);
+#else
+    vec3 p = H - n * NoHH;
+#endif
+    // |H|^2 times the squared sine and cosine of the angle between n and h. Where H is 0, 1e-37 makes 0/0 a number.
+    float sin2 = p.x * p.x + (p.y * p.y + (p.z * p.z + 1e-37));
+    float cos2 = NoHH * NoHH;
+    float HH = sin2 + cos2;
+    float k = alpha * HH / (sin2 + alpha2 * cos2);
+#else
+    float HH = dot(H, H) + 1e-37;
+    float k = distribution_root(n, H, NoHH, alpha);
+#endif
+    g = Cosines(NoL, NoV, sqrt(HH), HH, lit);
+
+#if BRDF_V == V_EXACT
+    float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
+    float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
+    float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
+#else
+    float V = visibility(NoL, NoV, g.c, alpha);
+#endif
+#if BRDF_V == V_KELEMEN
+    return min(2.0 * (k * k * (V * lit)), 1e37); // at the horizons its V has no end that the peak of D could meet
+#else
+    return 2.0 * (k * k * (V * lit));
+#endif
+}
+#endif
+
 // Radiance reflected toward v per unit of irradiance perpendicular to l: (diffuse + specular) (n.l)+.
 // Defined, finite and >= 0 for every unit l, v, n and every material in 0...1; 0 on the back side, at both horizons and
 // where l = -v. Below roughness 1e-6 the highlight falls behind the model's, which leaves float's range at 2.5e-7; at 0, a
@@ -110,81 +165,18 @@ vec3 shade_exercise(vec3 l, vec3 v, vec3 n, Material m)
 //      Z - A = 0.96 G: it is not negative. All but a is the same for the three colours.
 // A GPU clamps to 0...1, halves, doubles and quadruples what it computes for nothing: constants are arranged for that.
 // Other rungs put another k, V or w in their places, or scatter another share of the albedo; what adds up is the same.
-//
-// D_HALF is the same for half precision, in which the guards of the others are 0 or infinite, |H|^2 falls below what has
-// digits, and alpha^4, or k^2, leaves the range. It computes 16 H in the place of H, which cancels in k and which a GPU
-// gets for nothing; k^2 never stands by itself; and the highlight ends at HALF_MOST.
 vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 {
-    float alpha = m.roughness * m.roughness;
-#if BRDF_D == D_HALF
-    float alpha2 = alpha * alpha;
-#else
-    float alpha2 = alpha * alpha + 1e-26; // so that k <= 5e12 and S < 1e38: nothing here leaves float's range
-#endif
-    float NoL = clamp(dot(n, l), 0.0, 1.0);
-    float NoV = clamp(dot(n, v), 0.0, 1.0);
-#if BRDF_D == D_HALF
-    float behind = clamp(1.0 - HALF_MOST * NoV, 0.0, 1.0); // also where NoV is below 1.7e-5, which a half hardly tells from 0
-#else
-    float behind = clamp(1.0 - 1e38 * NoV, 0.0, 1.0); // 1 where NoV is 0, the viewer behind the surface; else 0
-#endif
-    float lit = clamp(NoL / (2.0 * PI) - behind, 0.0, 1.0); // n.l/2pi, which is below 1; 0 for a viewer behind
+    Cosines g;
+    float S = highlight(l, v, n, m.roughness * m.roughness, g);
 
-#if BRDF_D == D_HALF
-    vec3 H8 = 4.0 * (l + v); // 8 H, and so on
-    float NoHH8 = 4.0 * (NoL + NoV);
-    vec3 p16 = 2.0 * (H8 - n * NoHH8);
-    float sin2 = dot(p16, p16);
-    float HH = sin2 + 4.0 * (NoHH8 * NoHH8); // 256 |H|^2
-    float k = alpha * HH / half_divisor(sin2, 2.0 * (alpha * NoHH8));
-    float c = sqrt(HH) / 16.0;
-#else
-    vec3 H = 0.5 * (l + v);
-    float NoHH = 0.5 * (NoL + NoV); // n.H where it matters: with both cosines positive
-#if BRDF_D == D_CROSS || BRDF_D == D_PROJECT
-#if BRDF_D == D_CROSS
-    vec3 p = cross(n, H);
-#else
-    vec3 p = H - n * NoHH;
-#endif
-    // |H|^2 times the squared sine and cosine of the angle between n and h. Where H is 0, 1e-37 makes 0/0 a number.
-    float sin2 = p.x * p.x + (p.y * p.y + (p.z * p.z + 1e-37));
-    float cos2 = NoHH * NoHH;
-    float HH = sin2 + cos2;
-    float k = alpha * HH / (sin2 + alpha2 * cos2);
-#else
-    float HH = dot(H, H) + 1e-37;
-    float k = distribution_root(n, H, NoHH, alpha);
-#endif
-    float c = sqrt(HH);
-#endif
-
-#if BRDF_V == V_EXACT
-    float masking = sqrt((NoV - alpha2 * NoV) * NoV + alpha2);
-    float shadowing = sqrt((NoL - alpha2 * NoL) * NoL + alpha2);
-#if BRDF_D == D_HALF
-    float V = 1.0 / (NoL * (2.0 * masking) + (NoV * (2.0 * shadowing) + HALF_LEAST));
-#else
-    float V = 0.5 / (NoL * masking + (NoV * shadowing + 1e-37));
-#endif
-#else
-    float V = visibility(NoL, NoV, c, alpha);
-#endif
-#if BRDF_D == D_HALF
-    float S = min(2.0 * (k * (k * (V * lit))), HALF_MOST);
-#elif BRDF_V == V_KELEMEN
-    float S = min(2.0 * (k * k * (V * lit)), 1e37); // at the horizons its V has no end that the peak of D could meet
-#else
-    float S = 2.0 * (k * k * (V * lit));
-#endif
-
+    float c = g.c;
 #if BRDF_F == F_GAUSSIAN || BRDF_D == D_HALF // in half precision x - x y has lost w where it is small
     float w = schlick_weight(c);
     float W = 1.0 - w;
 #else
     float x = clamp(1.0 - c, 0.0, 1.0);
-    float q = c - 0.5 * HH;      // (1 - x^2)/2
+    float q = c - 0.5 * g.c2;    // (1 - x^2)/2
     float y = 4.0 * (q - q * q); // 1 - x^4
     float W = x * y + c;         // 1 - x^5
 #if BRDF_F == F_POW
@@ -208,7 +200,7 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
     float Z = -DIELECTRIC_F0 * G + W;
 #endif
 #endif
-    float E = 2.0 * (dielectric * lit);
+    float E = 2.0 * (dielectric * g.lit);
 
     // The same for each of the rungs: S F + E times what is scattered. Three colours take part only where they must.
 #if BRDF_MULTI == MULTI_FITTED || BRDF_F == F_F82 || BRDF_DIFFUSE == DIFFUSE_EON
@@ -222,16 +214,16 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 #if BRDF_DIFFUSE == DIFFUSE_FRESNEL
     vec3 scattered = m.albedo * left;
 #elif BRDF_DIFFUSE == DIFFUSE_EON
-    vec3 scattered = diffuse_eon(m.albedo, m.roughness, NoL, NoV, dot(l, v));
+    vec3 scattered = diffuse_eon(m.albedo, m.roughness, g.NoL, g.NoV, dot(l, v));
 #else
-    vec3 scattered = m.albedo * lambert_share(NoL, NoV, c, m.roughness);
+    vec3 scattered = m.albedo * lambert_share(g.NoL, g.NoV, c, m.roughness);
 #endif
     vec3 F0 = dielectric * DIELECTRIC_F0 + m.metalness * m.albedo;
-    return S * F * compensation(F0, NoV, m.roughness) + E * scattered;
+    return S * F * compensation(F0, g.NoV, m.roughness) + E * scattered;
 #elif BRDF_DIFFUSE == DIFFUSE_FRESNEL
     return m.albedo * (S * A + E * Z - E * A * m.albedo) + S * B;
 #else
-    return m.albedo * (S * A + E * lambert_share(NoL, NoV, c, m.roughness)) + S * B;
+    return m.albedo * (S * A + E * lambert_share(g.NoL, g.NoV, c, m.roughness)) + S * B;
 #endif
 }
 

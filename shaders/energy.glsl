@@ -32,7 +32,7 @@ float energy_cosine(float NoV, float roughness)
     float p0 = ((1.5715 * r - 3.3692) * r + 2.1103) * r + 0.1594;
     float p1 = (0.0733 * r - 0.4878) * r - 0.1647;
     float p2 = -1.1143 * r + 0.0625;
-    return clamp(NoV + r * (((-0.1187 * s + p2) * s + p1) * s + p0), 0.0, 1.0);
+    return max(NoV + r * (((-0.1187 * s + p2) * s + p1) * s + p0), 0.0);
 }
 
 #endif

@@ -7,9 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import glsl, sprj_v1
 from ..errors import ProjectError
-from ..xml_lines import Element, parse
+from ..language import glsl
+from ..projects import sprj_v1
+from ..projects.xml_lines import Element, parse
 from . import features, models, samplers, shaders, structure, textures, uniforms
 from .findings import RULES, SEVERITIES, Finding, Rule
 from .state import State

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..native import Stage
-from ..xml_lines import Element
+from ..projects.xml_lines import Element
 from . import models, roles, samplers, textures
 from .state import DRAWN, Bound, PassState, State, child_text, path_of
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import NativeError
-from ..glsl import shown_path
+from ..language.glsl import shown_path
 from ..native import Stage
 from . import renderer
 from .state import State

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from .. import glsl
+from ..language import glsl
 from .state import PassState, State
 
 _LOOP = re.compile(r"\b(while|for)\s*\(")

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import native, shapes
+from .. import native
 from ..errors import NativeError, did_you_mean
 from ..native import Field, Mesh, Stage
 from ..native.mesh_data import SLICES, MeshData, mesh_data
-from ..project import SHAPES
-from ..xml_lines import Element
+from ..projects.project import SHAPES
+from ..projects.xml_lines import Element
+from ..rendering import shapes
 from . import declarations, flow, roles, samplers
 from .state import PassState, State, child_text, path_of
 from .structure import check_path, read_number

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from .. import native
 from ..errors import ProjectError
 from ..native import Program, Stage
-from ..programs import SYSTEM_MACROS, declared_samplers
+from ..rendering.programs import SYSTEM_MACROS, declared_samplers
 
 __all__ = [
     "STAGES",
@@ -76,8 +76,8 @@ class Refusal(NamedTuple):
 
 def refusals(path: Path) -> list[Refusal]:
     """What ``harness render``'s reader refuses or warns of."""
-    from .. import sprj
-    from ..traps import Traps
+    from ..projects import sprj
+    from ..projects.traps import Traps
 
     traps = Traps(keep_going=True)
     found = _refused(lambda: sprj.read(path, traps))

@@ -7,10 +7,10 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from .. import glsl
 from ..errors import GlslError, NativeError, did_you_mean
+from ..language import glsl
 from ..native import Stage
-from ..xml_lines import Element
+from ..projects.xml_lines import Element
 from . import includes, loops, renderer
 from .state import PassState, State, flag, path_of
 from .structure import check_path

@@ -1,7 +1,7 @@
 """What the checks share: the project as its XML has it, what was found so far, and the compiled passes.
 
-The .sprj is read element by element and not through ``harness.sprj``: that reader stops at the first fault, and a
-check goes on to the next.
+The .sprj is read element by element and not through ``harness.projects.sprj``: that reader stops at the first fault,
+and a check goes on to the next.
 """
 
 from __future__ import annotations
@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..glsl import Source, shown_path
+from ..language.glsl import Source, shown_path
 from ..native import Program, Stage
-from ..xml_lines import Element
+from ..projects.xml_lines import Element
 from .findings import Finding
 
 TRUE = tuple("1tTyY")  # what a truth value begins with

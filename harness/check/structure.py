@@ -6,9 +6,9 @@ import os
 import re
 
 from ..errors import ProjectError
-from ..project import LAYOUT_VALUES, SHAPES
-from ..sprj_values import MACRO_NAME_LIMIT, MACRO_VALUE_LIMIT, NAME_LIMIT, PATH_LIMIT
-from ..xml_lines import Element
+from ..projects.project import LAYOUT_VALUES, SHAPES
+from ..projects.sprj_values import MACRO_NAME_LIMIT, MACRO_VALUE_LIMIT, NAME_LIMIT, PATH_LIMIT
+from ..projects.xml_lines import Element
 from . import renderer
 from .state import DEFAULT_LAYOUT, DRAWN, Bound, PassState, State, child_text, flag, path_of
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import textures
 from ..errors import did_you_mean
 from ..native import Stage
-from ..textures import TextureError
-from ..xml_lines import Element
+from ..projects.xml_lines import Element
+from ..rendering import textures
+from ..rendering.textures import TextureError
 from . import flow, roles, samplers
 from .state import Bound, PassState, State, flag, path_of
 from .structure import check_path, faces

@@ -6,8 +6,8 @@ import re
 
 from ..errors import did_you_mean
 from ..native import Stage, gl_enums
-from ..project import SYSTEM_TYPES, VARIABLE_TYPES
-from ..xml_lines import Element
+from ..projects.project import SYSTEM_TYPES, VARIABLE_TYPES
+from ..projects.xml_lines import Element
 from . import declarations
 from .declarations import Declared
 from .state import PassState, State, flag

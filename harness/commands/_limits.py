@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from .. import worker
+from ..processes import worker
 
 
 def add_arguments(parser: argparse.ArgumentParser, seconds: float | None) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ..errors import CallError
 
 if TYPE_CHECKING:
-    from ..call import Shader
+    from ..calling.call import Shader
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def load(options: argparse.Namespace) -> Shader:
     """The functions of the file. GlslError when it does not compile."""
-    from ..call import shader
+    from ..calling.call import shader
 
     defines = dict(pair(text, "a macro") for text in options.define)
     return shader(options.file, defines, options.include, options.mode)

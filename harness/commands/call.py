@@ -11,7 +11,7 @@ from ..errors import CallError
 from . import _shader
 
 if TYPE_CHECKING:
-    from ..function import Function
+    from ..calling.function import Function
 
 SHORT = "call a GLSL function"
 DESCRIPTION = """\
@@ -48,8 +48,8 @@ def run(options: argparse.Namespace) -> None:
 
 def _arguments(function: Function, given: Iterable[tuple[str, str]]) -> dict[str, Any]:
     """Arguments and uniforms by name, structures put together from their members."""
-    from ..texture_argument import SAMPLERS, Texture
-    from ..values import read
+    from ..calling.texture_argument import SAMPLERS, Texture
+    from ..language.values import read
 
     inputs = [p for signature in function.signatures for p in signature.inputs]
     parameters = {p.name for p in inputs}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from ..chips import CHIPS, TARGETS
+from ..costing.chips import CHIPS, TARGETS
 from . import _shader
 
 SHORT = "count what a GLSL function costs on GPUs"
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Prints a table, and on stderr why there are no chips in it when there is no driver."""
-    from .. import isa, spirv_cost
+    from ..costing import isa, spirv_cost
 
     function = _shader.load(options)[options.function]
     count = spirv_cost.weighted_count(function)

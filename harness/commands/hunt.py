@@ -65,7 +65,7 @@ def run(options: argparse.Namespace) -> int:
     find = [part for text in options.find for part in _parts(text)] or ["nonfinite"]
     if options.exhaustive:
         return _exhaustive(options, function, domain, find)
-    from ..hunt import hunt
+    from ..searching.hunt import hunt
 
     with _progress(f"hunting in {options.function}") as progress:
         findings = hunt(
@@ -126,7 +126,7 @@ def _domain(text: str) -> Any:
 
 
 def _print_finding(finding: Any) -> None:
-    from ..failure import numbers, shown_inputs
+    from ..comparing.failure import numbers, shown_inputs
 
     goal, trial = finding.goal, finding.trial
     where = f"{finding.inputs.signature} in {finding.samples} samples"
@@ -153,7 +153,7 @@ def _print_finding(finding: Any) -> None:
 def _write_test(bad: list[Any], options: argparse.Namespace, samples: int) -> None:
     from pathlib import Path
 
-    from ..regression import test_module
+    from ..searching.regression import test_module
 
     words = ["harness", "hunt", options.file, options.function]
     words += [word for text in options.domain for word in ("--domain", text)]

@@ -50,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Prints the survivors and the table."""
-    from .. import mutate, mutate_equivalents, mutate_project, mutate_report
+    from ..mutating import mutate, mutate_equivalents, mutate_project, mutate_report
 
     listed = options.equivalent
     if listed is None:

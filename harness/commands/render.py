@@ -54,7 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Writes the pictures. 1 where something was left out."""
     from ..picture import write_png, write_targets
-    from ..render import Renderer, render_sequence
+    from ..rendering.render import Renderer, render_sequence
 
     renderer = Renderer(
         options.project,

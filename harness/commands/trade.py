@@ -46,7 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Measures, writes the files when all is measured, and prints the summary."""
-    from .. import ladder, sprj
+    from .. import ladder
+    from ..projects import sprj
     from ..trade import choices, illustrate, markdown, measure, write
 
     project = sprj.read(options.project)

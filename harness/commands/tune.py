@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 
-from ..chips import CHIPS
+from ..costing.chips import CHIPS
 from .render import size
 
 SHORT = "choose the cheapest rungs that keep a .sprj's picture within a budget"

@@ -30,7 +30,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> None:
     """Shows it until its window is closed."""
-    from ..view import view
+    from ..viewing.view import view
 
     view(options.project, options.size, options.frames)
 

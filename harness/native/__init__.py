@@ -171,6 +171,11 @@ def open_context() -> None:
     _done(_library.hn_context_open())
 
 
+def context_is_open() -> bool:
+    """Whether the process has its context: then it must not be forked, for a child would wait for threads it lacks."""
+    return _library.hn_context_info() is not None
+
+
 def context_info() -> dict[str, str]:
     """What draws: ``renderer``, ``version``, ``glsl`` and ``backend`` of the open context."""
     text = _library.hn_context_info()

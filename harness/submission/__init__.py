@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from PIL import Image
 
-from .. import sprj
 from ..errors import HarnessError
-from ..glsl import shown_path
+from ..language.glsl import shown_path
 from ..picture import write
-from ..project import Project
-from ..worker import MEMORY_BYTES, SECONDS
+from ..processes.worker import MEMORY_BYTES, SECONDS
+from ..projects import sprj
+from ..projects.project import Project
 from . import archive, contents, evidence, exercise, report
 
 REPORT = "report.html"

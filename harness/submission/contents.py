@@ -1,6 +1,6 @@
 """The files of a project: all that its .sprj names, what these include or name in turn, and nothing else.
 
-Read from the XML, not through ``harness.sprj``, which leaves out what is not drawn: SHADERed opens that too.
+Read from the XML, not through ``harness.projects.sprj``, which leaves out what is not drawn: SHADERed opens that too.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from .. import sprj_v1
 from ..errors import ProjectError
-from ..glsl import shown_path
-from ..glsl_syntax import without_comments
-from ..sprj_objects import FACES
-from ..xml_lines import Element, parse
+from ..language.glsl import shown_path
+from ..language.glsl_syntax import without_comments
+from ..projects import sprj_v1
+from ..projects.sprj_objects import FACES
+from ..projects.xml_lines import Element, parse
 
 # Any form that either compiler may take; a name that is found nowhere is no file.
 _INCLUDE = re.compile(r'^[ \t]*#[ \t]*include\b[ \t]*(?:"([^"]+)"|<([^>]+)>)', re.MULTILINE)

@@ -14,14 +14,15 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from .. import isa, ladder, spirv_cost
-from ..call import shader
-from ..chips import TARGETS
+from .. import ladder
+from ..calling.call import shader
+from ..costing import isa, spirv_cost
+from ..costing.chips import TARGETS
 from ..errors import HarnessError, among
-from ..glsl_syntax import without_comments
-from ..project import Project
-from ..render import Renderer
-from ..tokens import Text
+from ..language.glsl_syntax import without_comments
+from ..language.tokens import Text
+from ..projects.project import Project
+from ..rendering.render import Renderer
 from ..trade import choices, file, markdown, stale, tables
 from .exercise import Exercise, Quotation, Region
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .. import view_macros
-from ..call import shader
+from ..calling.call import shader
+from ..calling.function import Function
 from ..errors import LadderError, among
-from ..function import Function
 from ..ladder import Ladder, Preset, Rung, Term
-from ..project import Project
+from ..projects.project import Project
+from ..viewing import view_macros
 from . import sampling
 
 #: the preset that the others' values, times and pictures are compared with

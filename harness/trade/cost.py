@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from .. import isa, spirv_cost
-from ..chips import TARGETS
+from ..calling.function import Function
+from ..costing import isa, spirv_cost
+from ..costing.chips import TARGETS
 from ..errors import CallError
-from ..function import Function
 
 
 def targets() -> tuple[str, ...]:

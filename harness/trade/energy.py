@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..function import Function
+from ..calling.function import Function
 from . import sampling
 from .model import checked, surface
 from .values import Flat, values

@@ -26,7 +26,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..function import Function
+from ..calling.function import Function
 from . import sampling
 from .values import Flat, values
 

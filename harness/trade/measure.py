@@ -8,10 +8,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from .. import isa, sprj
+from ..costing import isa
 from ..errors import HarnessError
 from ..info import info
 from ..ladder import Ladder
+from ..projects import sprj
 from . import cost, scene, tasks, timing
 from .choices import REFERENCE, Choice, choices, defaults
 from .tasks import Found

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ..calling.function import Function
 from ..errors import CallError
-from ..function import Function
-from ..inputs import named_leaves
+from ..searching.inputs import named_leaves
 from . import relative
 from .values import Flat, only, values
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ..budget import Spread
-from ..ulp import PRECISIONS, distance
+from ..comparing.budget import Spread
+from ..comparing.ulp import PRECISIONS, distance
 from .values import Flat, shown
 
 

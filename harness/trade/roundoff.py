@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..function import Function
+from ..calling.function import Function
 from . import relative
 from .values import Flat, rounded, values
 

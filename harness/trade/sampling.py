@@ -18,10 +18,10 @@ from typing import Any
 
 import numpy as np
 
-from ..domain import ROW, Domain
-from ..function import Function
-from ..inputs import named_leaves
-from ..spaces import SIMPLE, Interval, Unit
+from ..calling.function import Function
+from ..searching.domain import ROW, Domain
+from ..searching.inputs import named_leaves
+from ..searching.spaces import SIMPLE, Interval, Unit
 
 COUNT = 1 << 17
 SEED = 1
@@ -37,8 +37,8 @@ _WIDE = 1e6
 
 
 def inputs(function: Function, domain: Mapping[str, Any], count: int) -> dict[str, np.ndarray]:
-    """``count`` inputs of a function from a domain (harness/domain.py), always the same: parts by dotted names,
-    (count, *shape), floats as float64. DomainError when the domain does not fit the function."""
+    """``count`` inputs of a function from a domain, always the same: parts by dotted names, (count, *shape), floats as
+    float64. DomainError when the domain does not fit the function."""
     where = Domain.of(function, domain)
     random = np.random.default_rng(SEED)
     leaves = named_leaves(where.signature)

@@ -9,9 +9,9 @@ from functools import cache
 
 import numpy as np
 
-from .. import view_macros
 from ..errors import CompareError, HarnessError
-from ..render import Renderer
+from ..rendering.render import Renderer
+from ..viewing import view_macros
 
 #: width and height of the pictures that are compared
 SIZE = (640, 360)

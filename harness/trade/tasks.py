@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from .. import domain, jobs
+from ..calling.function import Function
 from ..errors import HarnessError
-from ..function import Function
+from ..processes import jobs
+from ..searching import domain
 from . import energy, extremes, model, roundoff, sampling, scene, timing
 from .choices import WHOLE, Choice
 

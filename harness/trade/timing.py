@@ -18,14 +18,16 @@ from typing import Any
 
 import numpy as np
 
-from .. import dialect, native, process
-from ..domain import Domain
+from .. import native
+from ..calling.function import Function
 from ..errors import CallError, HarnessError, NativeError
-from ..function import Function
-from ..inputs import named_leaves
-from ..leaf import leaves
+from ..language import dialect
+from ..language.leaf import leaves
 from ..native import gl_enums
-from ..spaces import Interval, Unit
+from ..processes import process
+from ..searching.domain import Domain
+from ..searching.inputs import named_leaves
+from ..searching.spaces import Interval, Unit
 from .values import only
 
 INVOCATIONS = 1 << 16
@@ -78,7 +80,7 @@ class Time:
 
 
 def job(function: Function, domain: Mapping[str, Any], reference: int) -> Job:
-    """The stages for a function of a domain (harness/domain.py). CallError, DomainError when it has no such inputs."""
+    """The stages for a function of a domain. CallError, DomainError when it has no such inputs."""
     signature = only(function)
     where = Domain.of(function, domain)
     numbers, made = 0, []

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .. import inputs
+from ..calling.function import Function
+from ..comparing.failure import hexadecimal
 from ..errors import CallError
-from ..failure import hexadecimal
-from ..function import Function
-from ..inputs import Batch
-from ..signature import Signature
+from ..language.signature import Signature
+from ..searching import inputs
+from ..searching.inputs import Batch
 
 Flat = Mapping[str, np.ndarray]
 

@@ -15,16 +15,16 @@ from pathlib import Path
 
 import numpy as np
 
-from ..call import shader
+from ..calling.call import shader
 from ..check import compiled, flow
 from ..check.features import ConstantMap, ConstantMetalness, NothingMirrored, UnreadTexture, takes_metalness, unneeded
 from ..check.roles import METALNESS
 from ..check.state import PassState
 from ..ladder import Ladder
 from ..native import Stage
-from ..prepare import PreparedPass
-from ..project import VARIABLE_TYPES, Pass, Project, VertexBuffer
-from ..xml_lines import parse
+from ..projects.project import VARIABLE_TYPES, Pass, Project, VertexBuffer
+from ..projects.xml_lines import parse
+from ..rendering.prepare import PreparedPass
 from . import edit
 
 _MAP = re.compile(r"HAS_(\w+)_MAP")

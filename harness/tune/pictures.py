@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..camera import Camera
-from ..frames import Stage
-from ..prepare import PreparedPass, prepare, relink
-from ..project import ComputePass, Macro, Pass, Project
-from ..system import Moment
-from ..traps import Traps
+from ..projects.project import ComputePass, Macro, Pass, Project
+from ..projects.traps import Traps
+from ..rendering.camera import Camera
+from ..rendering.frames import Stage
+from ..rendering.prepare import PreparedPass, prepare, relink
+from ..rendering.system import Moment
 
 #: name of a pass -> its macros that are others than the project's
 Macros = Mapping[str, Mapping[str, str]]

@@ -12,11 +12,15 @@ from functools import lru_cache
 
 import numpy as np
 
-from .. import glsl, isa, native, programs, spirv, spirv_cost
-from ..cost_stage import VERSION, raised
+from .. import native
+from ..costing import isa, spirv_cost
+from ..costing.cost_stage import VERSION, raised
 from ..errors import NativeError
+from ..interpreting import spirv
+from ..language import glsl
 from ..native import Stage
-from ..project import Pass, Project
+from ..projects.project import Pass, Project
+from ..rendering import programs
 
 _DECORATE, _LOCATION, _BINDING = 71, 30, 33
 #: what harness_isa has room for

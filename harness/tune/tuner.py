@@ -11,13 +11,15 @@ from pathlib import Path
 import numpy as np
 
 from .. import ladder as ladders
-from .. import programs, sprj, view_macros
 from ..errors import HarnessError, LadderError, ProjectError
 from ..ladder import Ladder, Preset
 from ..picture import write
-from ..project import Pass, Project
+from ..projects import sprj
+from ..projects.project import Pass, Project
+from ..projects.xml_lines import parse, read_bytes
+from ..rendering import programs
 from ..trade.scene import Difference
-from ..xml_lines import parse, read_bytes
+from ..viewing import view_macros
 from . import edit, needs, views
 from .compare import Comparison, draw
 from .needs import Need

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..camera import Camera
+from ..rendering.camera import Camera
 from ..trade.scene import Difference
 
 

@@ -12,9 +12,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from .. import camera as cameras
-from ..camera import Camera
-from ..project import ArcballCamera, FirstPersonCamera, Geometry, Pass, Project
+from ..projects.project import ArcballCamera, FirstPersonCamera, Geometry, Pass, Project
+from ..rendering import camera as cameras
+from ..rendering.camera import Camera
 
 COUNT = 8
 #: degrees that views are above and below the camera, in turn

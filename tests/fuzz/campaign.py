@@ -13,7 +13,7 @@ from pathlib import Path
 
 from cases import WrongError, describe, run
 
-from harness.process import Process
+from harness.processes.process import Process
 
 CASE_SECONDS = 20.0  # llvmpipe compiles a shader in milliseconds, an endless loop ends after 65535 rounds
 MEMORY_BYTES = 2 << 30

@@ -13,11 +13,14 @@ from pathlib import Path
 
 from mutations import spoil
 
-from harness import HarnessError, glsl, library, native, sprj
+from harness import HarnessError, native
+from harness.calling import library
 from harness.check import check
+from harness.language import glsl
 from harness.native import Stage
-from harness.render import Renderer
-from harness.traps import Traps
+from harness.projects import sprj
+from harness.projects.traps import Traps
+from harness.rendering.render import Renderer
 
 KINDS = {".sprj": "xml", ".png": "bytes", ".jpg": "bytes", ".hdr": "bytes", ".bmp": "bytes", ".tga": "bytes"}
 KINDS |= {".gltf": "bytes", ".glb": "bytes", ".obj": "bytes", ".bin": "bytes", ".dds": "bytes"}

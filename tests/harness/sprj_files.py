@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from harness import ProjectError, sprj
-from harness.project import Project
-from harness.render import Renderer
-from harness.traps import Traps, Warning
+from harness import ProjectError
+from harness.projects import sprj
+from harness.projects.project import Project
+from harness.projects.traps import Traps, Warning
+from harness.rendering.render import Renderer
 
 #: a full-screen quad: location 0 is its position, 1 its texture coordinate
 QUAD_VERT = """#version 330

@@ -13,7 +13,7 @@ from harness import NativeError, native
 
 # Every kind of work that goes through GL: evaluation in both stages, textures, meshes, draws, pictures. For all tests
 # with each backend there is `make test-backends`.
-SUITE = ["tests/harness/test_evaluation.py", "tests/harness/test_render.py"]
+SUITE = ["tests/harness/calling/test_evaluation.py", "tests/harness/rendering/test_render.py"]
 
 
 # A server that does not start anew, deaf meanwhile, whenever nobody is connected.

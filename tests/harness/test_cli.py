@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from harness import HarnessError, cli
-from harness.dialect import MODES
+from harness.language.dialect import MODES
 
 
 def harness(*arguments, cwd=None):

@@ -13,8 +13,8 @@ import pytest
 from PIL import Image
 
 from harness import HarnessError, native
-from harness.render import render
-from harness.traps import Warning
+from harness.projects.traps import Warning
+from harness.rendering.render import render
 
 ROOT = Path(__file__).resolve().parents[2]
 COPIES = ROOT / "tests" / "conformance"

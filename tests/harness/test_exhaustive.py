@@ -9,7 +9,7 @@ from harness import CompareError, DomainError
 from harness import exhaustive as subject
 from harness.cli import main
 from harness.exhaustive import exhaustive, exhaustive_goals
-from harness.spaces import ordered
+from harness.searching.spaces import ordered
 
 TEXT = """
 float id(float x) { return x; }

@@ -7,9 +7,10 @@ import re
 import pytest
 from sprj_files import read, shader_pass, write_project
 
-from harness import LadderError, ladder, shader, sprj
-from harness.domain import samples
-from harness.glsl import VERSION, load
+from harness import LadderError, ladder, shader
+from harness.language.glsl import VERSION, load
+from harness.projects import sprj
+from harness.searching.domain import samples
 
 LADDER = """
 [[term]]
@@ -71,7 +72,7 @@ def test_the_project_has_the_ladder_beside_its_shaders(own, root):
         "BRDF_MULTI",
         "SRGB_DECODE",
     ]
-    assert [preset.name for preset in own.presets] == ["exercise", "exact", "desktop", "mobile", "offline"]
+    assert [preset.name for preset in own.presets] == ["exercise", "exact", "default", "desktop", "mobile", "offline"]
 
 
 def text_of(own, file):
@@ -100,11 +101,18 @@ def test_every_macro_of_rungs_in_the_shaders_is_in_it(own):
     assert found == {term.macro for term in own.terms} | {"TONE_CURVE"}
 
 
-def test_the_defaults_of_the_shaders_are_the_exact_preset_but_for_the_exercises_decoding(own):
+def test_the_default_preset_is_what_the_shaders_default_to(own):
     defaults = {term.macro: choices(text_of(own, term.file), term.macro)[1] for term in own.terms}
-    assert {**defaults, "SRGB_DECODE": "SRGB_PIECEWISE"} == own.preset("exact").macros
+    assert defaults == own.preset("default").macros
+
+
+def test_the_exact_preset_is_each_terms_exact_rung(own):
     assert own.preset("exact").macros == {term.macro: term.exact for term in own.terms}
-    assert defaults["SRGB_DECODE"] == own.preset("exercise").macros["SRGB_DECODE"]
+
+
+def test_the_default_differs_from_the_exact_by_a_cheaper_D_and_the_exercises_decoding(own):
+    exact = own.preset("exact").macros
+    assert own.preset("default").macros == {**exact, "BRDF_D": "D_PROJECT", "SRGB_DECODE": "SRGB_POWER"}
 
 
 def test_every_term_is_a_function_of_the_inputs_that_it_states(own):

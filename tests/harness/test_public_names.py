@@ -31,10 +31,3 @@ def test_a_name_that_is_not_there_is_an_error_of_python():
 
 def test_the_package_alone_imports_nothing_slow():
     assert run("import sys, harness; print({'numpy', 'harness.native'} & {*sys.modules})") == "set()\n"
-
-
-@pytest.mark.parametrize("first", ["import harness.render", "from harness.render import draw", "import harness"])
-def test_render_is_the_function_though_a_module_has_its_name(first):
-    assert run(
-        f"{first}\nfrom harness import render\nimport harness\nprint(render is harness.render, callable(render))"
-    ) == ("True True\n")

@@ -10,7 +10,7 @@ from hypothesis import Phase, find, given, settings
 from hypothesis.errors import NoSuchExample
 
 from harness import HarnessError, strategies
-from harness.domain import Domain
+from harness.searching.domain import Domain
 
 TEXT = """
 float wrong(float x, float y) { return x > 0.7 && x < 0.8 ? -1.0 : x; }

@@ -49,7 +49,7 @@ title = "exact"
 source = "-"
 macros = { WHITE = "0" }
 """
-#: a product, an addition and a product, of three components each, as harness/spirv_cost.py weighs them
+#: a product, an addition and a product, of three components each, as harness/costing/spirv_cost.py weighs them
 OPERATIONS = {"0": 3.0, "1": 9.0, "exact": 3.0}
 
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from variants import MAPS, ROOT, constant_map, floats, write_small_project
 
-from harness import prepare, sprj
+from harness.projects import sprj
+from harness.rendering import prepare
 
 #: bytes of constant maps, and the constants that they stand for: white decodes to 1 under every SRGB_DECODE
 NEUTRAL = {

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from harness import prepare, sprj
-from harness.project import Pass, Project, Shader
-from harness.render import draw
+from harness.projects import sprj
+from harness.projects.project import Pass, Project, Shader
+from harness.rendering import prepare
+from harness.rendering.render import draw
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = ROOT / "project.sprj"

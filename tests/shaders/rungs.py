@@ -11,10 +11,10 @@ LADDER = ladder.load(Path(__file__).resolve().parents[2] / "shaders" / "ladder.t
 #: the macros of brdf.glsl and their values
 BRDF = {term.macro: [rung.value for rung in term.rungs] for term in LADDER.terms if term.file == "brdf.glsl"}
 #: what each is where nothing is said
-DEFAULT = {term.macro: term.exact for term in LADDER.terms if term.macro in BRDF}
+DEFAULT = {macro: LADDER.preset("default").macros[macro] for macro in BRDF}
 #: each rung but the defaults, by itself
 SINGLE = [{macro: value} for macro, values in BRDF.items() for value in values if value != DEFAULT[macro]]
-PRESETS = [{m: p.macros[m] for m in BRDF if p.macros[m] != DEFAULT[m]} for p in LADDER.presets if p.name != "exact"]
+PRESETS = [{m: p.macros[m] for m in BRDF if p.macros[m] != DEFAULT[m]} for p in LADDER.presets if p.name != "default"]
 
 
 def name(rung: dict[str, str]) -> str:

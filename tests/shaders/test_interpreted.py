@@ -9,7 +9,7 @@ import reference
 from extremes import extremes
 
 from harness import shader
-from harness.interpretation import Interpretation
+from harness.interpreting.interpretation import Interpretation
 
 
 def interpreted(function, precision="float32"):

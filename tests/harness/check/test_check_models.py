@@ -117,7 +117,7 @@ def test_a_built_in_sphere_under_a_normal_map(scene):
 )
 def test_tangents_of_built_in_shapes_against_u(shape, against):
     """Half the cube's faces are mirrored, and all of the others: as seen in SHADERed."""
-    from harness.xml_lines import Element
+    from harness.projects.xml_lines import Element
 
     item = Element("item", {}, "", 1, children=[Element("type", {}, "", 1, shape)])
     agreement = models.tangent_agreement(models._shape(item))

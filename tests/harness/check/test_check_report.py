@@ -6,8 +6,8 @@ import json
 import re
 
 import pytest
+from command_line import main
 
-from harness import cli
 from harness.check import RULES, SEVERITIES, Finding, report
 
 FOUND = [
@@ -82,7 +82,7 @@ def test_every_code_has_a_test(root):
 
 
 def run(scene, *arguments) -> int:
-    return cli.main(["check", str(scene.project), *arguments])
+    return main(["check", str(scene.project), *arguments])
 
 
 def test_exit_code_0_without_findings(scene, capfd):
@@ -115,14 +115,14 @@ def test_formats_for_machines(scene, capfd, format):
 
 
 def test_explain(capfd):
-    assert cli.main(["check", "--explain", "HS503"]) == 0
+    assert main(["check", "--explain", "HS503"]) == 0
     assert capfd.readouterr().out.startswith("HS503 (warning): " + RULES["HS503"].title)
-    assert cli.main(["check", "--explain", "all"]) == 0
+    assert main(["check", "--explain", "all"]) == 0
     assert capfd.readouterr().out == report.rules() + "\n"
-    assert cli.main(["check", "--explain", "HS999"]) == 1
+    assert main(["check", "--explain", "HS999"]) == 1
     assert "there is no code HS999" in capfd.readouterr().err
 
 
 def test_a_project_that_is_not_there(tmp_path, capfd):
-    assert cli.main(["check", str(tmp_path / "gone.sprj")]) == 1
+    assert main(["check", str(tmp_path / "gone.sprj")]) == 1
     assert "gone.sprj: error HS001: cannot read the project" in capfd.readouterr().out

@@ -108,5 +108,5 @@ def test_the_findings_in_the_project_come_first(scene):
 
 
 def test_what_the_reader_warns_of_is_found_where_nothing_else_is(scene):
-    pytest.importorskip("harness.traps")
+    pytest.importorskip("harness.projects.traps")
     scene.breaks([(SPRJ, 'wrap_s="Repeat"', 'wrap_s="Repeated"')], ("HS007", SPRJ, "PaintedMetal_1K-PNG_Color.png"))

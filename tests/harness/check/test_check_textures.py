@@ -177,8 +177,8 @@ def test_roles_by_names(path, role):
 
 
 def test_the_roles_of_the_project_s_samplers(root):
-    from harness import glsl
     from harness.check import flow, renderer
+    from harness.language import glsl
     from harness.native import Stage
 
     defines = {f"HAS_{m}_MAP": "1" for m in ("ALBEDO", "ROUGHNESS", "METALNESS", "NORMAL")}

@@ -6,8 +6,8 @@ import pickle
 
 import pytest
 
-from harness import sprj
 from harness.errors import LadderError
+from harness.projects import sprj
 from harness.trade.choices import choices, defaults
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from harness import CallError, isa
+from harness import CallError
+from harness.costing import isa
 from harness.trade import cost
 
 TEXT = "float f(float x, float y) { return x * y + x; } vec3 g(vec3 v) { return v * v + 1.5; }"

@@ -7,8 +7,10 @@ import math
 
 import pytest
 
-from harness import GlslError, isa, sprj
+from harness import GlslError
+from harness.costing import isa
 from harness.errors import LadderError
+from harness.projects import sprj
 from harness.trade import energy, extremes, sampling, scene, tasks, timing
 from harness.trade.choices import choices
 from harness.trade.measure import PARTS, measure

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from harness import CompareError, HarnessError, view_macros
+from harness import CompareError, HarnessError
 from harness.trade import scene
+from harness.viewing import view_macros
 
 needs_flip = pytest.mark.skipif(scene.flip_unavailable() is not None, reason=str(scene.flip_unavailable()))
 
@@ -79,7 +80,8 @@ def test_without_the_package_flip_is_refused_and_the_rest_is_there(grey, monkeyp
 
 def test_a_project_under_the_macros_that_it_has_is_the_project(root):
     """HAMMON changes it, and what it says itself does not."""
-    from harness import render, sprj
+    from harness import render
+    from harness.projects import sprj
 
     own = {
         ladder.name: view_macros.own_rung(project, ladder)

@@ -6,8 +6,9 @@ import argparse
 
 import pytest
 import trade_data
+from command_line import main
 
-from harness import HarnessError, cli, ladder
+from harness import HarnessError, ladder
 from harness.commands import trade
 from harness.trade import choices, file, illustrate, markdown, measure, readme
 
@@ -86,18 +87,18 @@ def test_what_is_there_stays_when_the_page_cannot_be_made(measured, tmp_path, mo
 
 def test_a_folder_that_cannot_be_made_is_one_line(measured, tmp_path, capsys):
     (tmp_path / "file").write_text("")
-    assert cli.main(["trade", str(measured[0]), "-o", str(tmp_path / "file" / "trade")]) == 1
+    assert main(["trade", str(measured[0]), "-o", str(tmp_path / "file" / "trade")]) == 1
     assert capsys.readouterr().err.endswith("cannot make the folder: Not a directory\n")
 
 
 def test_a_project_without_a_ladder_is_told_so(tmp_path, capsys):
     (tmp_path / "p.sprj").write_text('<?xml version="1.0"?><project version="2"><pipeline /></project>')
-    assert cli.main(["trade", str(tmp_path / "p.sprj")]) == 1
+    assert main(["trade", str(tmp_path / "p.sprj")]) == 1
     assert f"there is no {ladder.FILE}" in capsys.readouterr().err
 
 
 def test_the_help_says_what_is_measured(capsys):
     with pytest.raises(SystemExit):
-        cli.main(["trade", "--help"])
+        main(["trade", "--help"])
     said = capsys.readouterr().out
     assert all(word in said for word in ("harness trade --rung", "trade.json", "extremes", "ladder.toml"))

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import pytest
 
-from harness import ladder, sprj
+from harness import ladder
+from harness.projects import sprj
 from harness.trade import choices, extremes, file, model, readme, sampling, stale
 
 

@@ -7,7 +7,9 @@ import trade_files
 from sprj_files import shader_pass, write_project
 from submission_files import replace
 
-from harness import isa, ladder, sprj
+from harness import ladder
+from harness.costing import isa
+from harness.projects import sprj
 from harness.trade import choices, cost, stale
 
 

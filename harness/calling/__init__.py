@@ -1,0 +1,1 @@
+"""Calls GLSL functions on numpy arrays."""

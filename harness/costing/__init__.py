@@ -1,0 +1,1 @@
+"""Counts what GLSL functions cost on GPUs."""

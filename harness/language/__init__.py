@@ -1,0 +1,1 @@
+"""GLSL as text: includes and macros, tokens, syntax, signatures, rewriting."""

@@ -1,0 +1,1 @@
+"""Puts small faults into GLSL files, and says which of them tests do not notice."""

@@ -1,0 +1,1 @@
+"""Other processes: work that runs in parallel, and work that may hang or crash."""

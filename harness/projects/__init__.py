@@ -1,0 +1,1 @@
+"""Reads SHADERed projects into plain data."""

@@ -1,0 +1,1 @@
+"""Renders SHADERed projects as SHADERed does."""

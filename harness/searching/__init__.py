@@ -1,0 +1,1 @@
+"""Searches domains for the inputs at which a function is at its worst."""

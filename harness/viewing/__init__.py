@@ -1,0 +1,1 @@
+"""Shows a project live in a window."""
