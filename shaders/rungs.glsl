@@ -278,7 +278,7 @@ vec3 diffuse(vec3 l, vec3 v, vec3 n, Material m)
 {
     float NoL = clamp(dot(n, l), 0.0, 1.0);
     float NoV = clamp(dot(n, v), 0.0, 1.0);
-    float LoH = min(0.5 * length(l + v), 1.0);
+    float LoH = 0.5 * length(l + v);
 #if BRDF_DIFFUSE == DIFFUSE_FRESNEL
     vec3 scattered = m.albedo * (1.0 - F_material(m, LoH));
 #elif BRDF_DIFFUSE == DIFFUSE_EON

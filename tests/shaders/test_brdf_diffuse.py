@@ -115,6 +115,14 @@ def test_eon_is_not_negative_where_rounding_makes_the_cosines_opposite(library, 
     assert np.isfinite(eon(ALBEDO, 1, 0, 0, [1.0, 1e-30])).all()
 
 
+def test_eon_at_the_horizon_loses_nothing(library, mode):
+    """There its polynomial is above the closed form, which is 1: single scattering alone, with s = 0, is left."""
+    A = 1 / (1 + ladder_reference.EON_C1)
+    for NoL, NoV in ((0, 1), (1, 0)):
+        got = library("brdf.glsl", mode).diffuse_eon(np.float32([1, 1, 1]), 1, NoL, NoV, 0)
+        assert_ulp(got, A, max_ulp=4)
+
+
 def test_eon_at_the_horizon_goes_with_the_larger_cosine(library, mode):
     """s/max(NoL, NoV), where the guard of the divisor takes no part: 1e-30 over 1e-32 is 100."""
     got = library("brdf.glsl", mode).diffuse_eon(np.float32([0.5] * 3), 1, 0, np.float32(1e-32), np.float32(1e-30))
@@ -129,6 +137,16 @@ WEIGHTS = {
     "DIFFUSE_BURLEY": ladder_reference.burley,
     "DIFFUSE_ENERGY": lambda i, o, c, r: ladder_reference.energy_share(o, r, FRESNEL["F_MULTIPLY"][1], 1),
 }
+
+
+def test_what_is_left_of_the_albedo_knows_of_several_reflections(library, mode):
+    """With BRDF_MULTI the highlight is larger, and less is left."""
+    NoV, r = grid(COSINES, ROUGHNESSES)
+    o, rough = NoV.astype(float), r.astype(float)
+    several = 1 + 0.04 * ladder_reference.energy_lost(o, rough)
+    want = ladder_reference.energy_share(o, rough, FRESNEL["F_MULTIPLY"][1], several)
+    got = library("brdf.glsl", mode, BRDF_MULTI="MULTI_FITTED").diffuse_energy(NoV, r)
+    np.testing.assert_allclose(got, want, rtol=0, atol=3e-6)
 
 
 def test_every_rung_is_tested():

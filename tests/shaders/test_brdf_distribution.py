@@ -133,8 +133,30 @@ def test_toward_the_back_it_is_what_it_is_at_right_angles(library, mode, rung):
 def test_a_mirror_and_opposite_vectors_give_numbers(library, mode, rung):
     distribution = library("brdf.glsl", mode, BRDF_D=rung).distribution
     assert distribution(UP, UP, UP, 0) == 0
-    opposite = distribution([0.6, 0, 0.8], [-0.6, 0, -0.8], UP, np.float32([0, 1e-9, 0.5, 1]))
-    assert np.isfinite(opposite).all() and (opposite >= 0).all()
+    alpha = np.float32([0, 0.5, 1])
+    opposite = distribution([0.6, 0, 0.8], [-0.6, 0, -0.8], UP, alpha)
+    # n.h counts as 0; D_HALF has neither sine nor cosine then, and its least divisor
+    a = alpha.astype(float)
+    want = np.minimum((a / 1.2e-7) ** 2 / np.pi, LARGEST_HALF) if rung == "D_HALF" else a**2 / np.pi
+    assert_ulp(opposite, want, max_ulp=6)
+
+
+@pytest.mark.parametrize("rung", [r for r in BRDF["BRDF_D"] if r != "D_HALF"])
+def test_a_half_vector_as_short_as_the_guard(library, mode, rung):
+    """Where |H|^2 is 1e-37, as much again is added to it, as a sine: half of the square is the cosine's."""
+    half = np.float32([0, 0, 0.5 * 1e-37**0.5])
+    alpha = np.float32([0.1, 0.5])
+    a2 = alpha.astype(float) ** 2
+    got = library("brdf.glsl", mode, BRDF_D=rung).distribution(half, half, UP, alpha)
+    assert_ulp(got, a2 / (np.pi * (0.5 + 0.5 * a2) ** 2), max_ulp=40)
+
+
+def test_a_cosine_that_rounding_lifts_above_one_counts_as_one(library, mode):
+    """1 - n.h would be below 0 by 1e-7, which is alpha^2 and more here: the peak stays."""
+    long = np.float32([0, 0, 1.0000001])
+    alpha = np.float32([3e-3, 5e-4, 2e-4])
+    got = library("brdf.glsl", mode, BRDF_D="D_ONE_MINUS").distribution(long, long, long, alpha)
+    assert_ulp(got, 1 / (np.pi * alpha.astype(float) ** 2), max_ulp=16)
 
 
 @pytest.mark.parametrize("rung", [r for r in BRDF["BRDF_D"] if r != "D_HALF"])

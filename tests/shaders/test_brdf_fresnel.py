@@ -91,6 +91,15 @@ def test_the_tint_is_what_82_degrees_show(library, mode):
     assert_ulp(got[:, [0, 2]], plain[:, [0, 2]], max_ulp=11)
 
 
+def test_what_the_tint_takes_is_its_formula(library, mode):
+    """A product of a dozen rounded factors, and the sum in Schlick's term."""
+    f0, c = colours(np.float32([0.05, 1 / 7, 0.3, 0.5, 0.75]))
+    F, x = f0.astype(float), c.astype(float)[:, None]
+    want = (1 - 0.75) * ladder_reference.schlick(F, 1 / 7) * x * (1 - x) ** 6 / (1 / 7 * (6 / 7) ** 6)
+    got = library("brdf.glsl", mode, F82_TINT="vec3(0.75)").f82_drop(f0, c)
+    assert_ulp(got, want, max_ulp=14)
+
+
 def test_without_a_tint_it_is_Schlicks(library, mode):
     f0, c = colours(LOH)
     got = library("brdf.glsl", mode, BRDF_F="F_F82", F82_TINT="vec3(1.0)").fresnel(f0, c)
