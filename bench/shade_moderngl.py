@@ -11,11 +11,13 @@ from collections.abc import Callable
 import moderngl
 import numpy as np
 
+from harness.language import glsl
+
 from . import ROOT, AbsentError
 from .inputs import Inputs
 
 WIDTH_MAX = 2048
-_BRDF = "#version 330\n" + (ROOT / "shaders" / "brdf.glsl").read_text(encoding="utf-8")
+_BRDF = glsl.load(ROOT / "shaders" / "brdf.glsl", {}, [ROOT / "shaders"], version=glsl.VERSION).text
 _TRIANGLE = """#version 330
 void main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0); }
 """

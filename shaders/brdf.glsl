@@ -137,6 +137,8 @@ float highlight(vec3 l, vec3 v, vec3 n, float alpha, out Cosines g)
 #endif
 #if BRDF_V == V_KELEMEN
     return min(2.0 * (k * k * (V * lit)), 1e37); // at the horizons its V has no end that the peak of D could meet
+#elif BRDF_V == V_HAMMON && BRDF_D != D_PROJECT && BRDF_D != D_CROSS
+    return k * k * (V * (2.0 * lit)); // where n.h is rounded to 1 at the horizons, a driver's other order leaves float's range
 #else
     return 2.0 * (k * k * (V * lit));
 #endif

@@ -242,8 +242,8 @@ def test_a_missing_include_is_named_where_it_is_asked_for(scene):
 
 
 def test_a_syntax_error_in_a_projects_include_names_that_file_and_line(scene):
-    line = replace_in(scene / "shaders" / "brdf.glsl", "vec3 H = l + v;", "vec3 H = l + w;")
-    assert_one_clear_message(render(scene), f"brdf.glsl:{line}:", "'w'", "vec3 H = l + w;", "Metals")
+    line = replace_in(scene / "shaders" / "brdf.glsl", "vec3 H = 0.5 * (l + v);", "vec3 H = 0.5 * (l + w);")
+    assert_one_clear_message(render(scene), f"brdf.glsl:{line}:", "'w'", "vec3 H = 0.5 * (l + w);", "Metals")
 
 
 def test_malformed_xml_gives_the_line(scene):
