@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from command_line import main
 
 from harness import CompareError, DomainError
 from harness import exhaustive as subject
-from harness.cli import main
 from harness.exhaustive import exhaustive, exhaustive_goals
 from harness.searching.spaces import ordered
 

@@ -6,9 +6,9 @@ import random
 
 import numpy as np
 import pytest
+from command_line import main
 
 from harness import CallError, GlslError, shader
-from harness.cli import main
 from harness.interpreting.interpretation import LANES, PRECISIONS, Interpretation
 
 

@@ -8,9 +8,9 @@ import sys
 
 import pytest
 import tune_scenes
+from command_line import main
 from sprj_files import line_of
 
-from harness.cli import main
 from harness.costing import isa
 
 
