@@ -102,7 +102,7 @@ def capped() -> Rows:
 
 def unlit() -> Rows:
     """The unlit side in half precision at roughness 0, by each V."""
-    tiles = [_sphere(form, "mediump", 0, form, "D_HALF", size=112) for form in _values("V")]
+    tiles = [_sphere(form, "mediump", 0, form, "D_PROJECT", size=112) for form in _values("V")]
     return [[*tiles, _sphere("default, float", "as-written", 0, size=112)]]
 
 

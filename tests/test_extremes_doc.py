@@ -110,16 +110,16 @@ def test_a_picture_comes_out_the_same_twice():
 # ---- The measures, against what follows from formulas ----------------------------------------------------------------
 
 
-def test_a_capped_peak_is_the_largest_half():
-    """65504 of 1/(pi alpha^2), and no cap where that is smaller; float32 rounds to 6e-8."""
-    for roughness in (0.02, 0.03, 0.1):
-        share = min(65504 * math.pi * roughness**4, 1)
+def test_a_capped_peak_is_one_that_a_half_can_hold():
+    """60000 of 1/(pi alpha^2), and no cap where that is smaller; float32 rounds to 6e-8."""
+    for roughness in (0.03, 0.1):
+        share = min(60000 * math.pi * roughness**4, 1)
         assert FAMILIES["peak"][f"D_HALF precise {roughness}"] == pytest.approx(share, rel=1e-6)
 
 
 def test_where_a_half_cannot_hold_the_peak():
-    """1/(pi r^4) = 65504 at r = 0.0469, and k^2 = 1/r^4 = 65504 at r = 0.0625, down to thousandths."""
-    assert FAMILIES["brightest"]["D_HALF precise"] == math.floor((65504 * math.pi) ** -0.25 * 1000) / 1000
+    """1/(pi r^4) = 60000 at r = 0.048, and k^2 = 1/r^4 = 65504 at r = 0.0625, down to thousandths."""
+    assert FAMILIES["brightest"]["D_HALF precise"] == math.floor((60000 * math.pi) ** -0.25 * 1000) / 1000
     assert FAMILIES["brightest"]["D_CROSS mediump"] == math.floor(65504**-0.25 * 1000) / 1000
 
 
