@@ -95,11 +95,11 @@ def true_peak(roughness: str) -> float:
     return 1 / (np.pi * float(roughness) ** 4)
 
 
-def brightest(form: str, mode: str) -> float:
-    """The largest roughness, in thousandths, at which D at h = n is not below 65504, the largest half."""
+def brightest(form: str, mode: str, limit: str = "65504") -> float:
+    """The largest roughness, in thousandths, at which D at h = n is not below a limit; the largest half is 65504."""
     roughness = np.arange(1, 1001) / 1000
     d = term(form, mode)(VIEWER, VIEWER, VIEWER, roughness**2)
-    return float(roughness[~(np.asarray(d, float) < 65504)].max(initial=0))
+    return float(roughness[~(np.asarray(d, float) < float(limit))].max(initial=0))
 
 
 # ---- Visibility ------------------------------------------------------------------------------------------------------
