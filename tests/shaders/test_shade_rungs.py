@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 import reference
 from extremes import extremes
-from rungs import BRDF, DEFAULT, LADDER, PRESETS, SINGLE, name, pairs
+from rungs import BRDF, DEFAULT, LADDER, PRESETS, SINGLE, name
 
-from harness import shader
 from harness.searching.domain import samples
 from harness.trade import extremes as trade_extremes
 
@@ -58,11 +57,6 @@ def assert_is_its_terms(brdf, macros):
 @pytest.mark.parametrize("rung", [{}, *SINGLE, *PRESETS], ids=name)
 def test_a_rung_or_preset_is_the_sum_of_its_terms(library, mode, rung):
     assert_is_its_terms(library("brdf.glsl", mode, **rung), rung)
-
-
-@pytest.mark.parametrize("model", pairs(), ids=name)
-def test_any_two_rungs_go_together(root, model):
-    assert_is_its_terms(shader(root / "shaders" / "brdf.glsl", defines=model), model)
 
 
 def test_every_rung_is_another_model_or_the_same_to_rounding():
