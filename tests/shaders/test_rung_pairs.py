@@ -1,5 +1,8 @@
-"""Any two rungs of the ladder go together. Apart from the other tests of shade(), for it compiles many models: what they
-notice of a fault in the shaders needs a rung or two alone, and putting faults into each of these would take long."""
+"""Any two rungs of the ladder go together.
+
+Apart from the other tests of shade(), for it compiles many models: what they notice of a fault in the shaders needs a
+rung or two alone, and trying each fault in all of these would take long.
+"""
 
 from __future__ import annotations
 
