@@ -123,7 +123,7 @@ float highlight(vec3 l, vec3 v, vec3 n, float alpha, out Cosines g)
     float HH = sin2 + cos2;
     float k = alpha * HH / (sin2 + alpha2 * cos2);
 #else
-    float HH = dot(H, H) + 1e-37;
+    float HH = dot(H, H);
     float k = distribution_root(n, H, NoHH, alpha);
 #endif
     g = Cosines(NoL, NoV, sqrt(HH), HH, lit);
@@ -177,7 +177,7 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
     float w = schlick_weight(c);
     float W = 1.0 - w;
 #else
-    float x = clamp(1.0 - c, 0.0, 1.0);
+    float x = 1.0 - c;
     float q = c - 0.5 * g.c2;    // (1 - x^2)/2
     float y = 4.0 * (q - q * q); // 1 - x^4
     float W = x * y + c;         // 1 - x^5
@@ -211,7 +211,7 @@ vec3 shade(vec3 l, vec3 v, vec3 n, Material m)
 #if BRDF_F == F_F82
     vec3 drop = m.metalness * f82_drop(m.albedo, c);
     F = max(F - drop, 0.0);
-    left = min(left + drop, 1.0);
+    left = left + drop;
 #endif
 #if BRDF_DIFFUSE == DIFFUSE_FRESNEL
     vec3 scattered = m.albedo * left;

@@ -272,3 +272,13 @@ def test_the_same_whether_an_argument_is_one_or_many(library, mode):
         },
     )
     np.testing.assert_array_equal(one, many)
+
+
+@pytest.mark.parametrize("cosine", [1e-37**0.5, 1e-37])
+def test_the_guards_are_felt_by_cosines_as_small_alone(library, mode, cosine):
+    """h = n, at both horizons: 1e-37 is added to the square of the sine, and to V's divisor, 2 cos alpha here."""
+    c, alpha, one = np.float32(cosine).astype(float), np.float64(0.5), np.float32(1)
+    got, _ = library("brdf.glsl", mode).highlight([one, 0, c], [-one, 0, c], [0, 0, 1], alpha)
+    k = alpha * (1e-37 + c**2) / (1e-37 + alpha**2 * c**2)
+    want = k**2 / np.pi * 0.5 / (2 * c * alpha + 1e-37) * c
+    np.testing.assert_allclose(got, want, rtol=40 * U, atol=0)

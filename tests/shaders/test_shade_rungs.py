@@ -23,6 +23,15 @@ MODES = ("mediump", "double")
 POW_ULP = 100
 
 
+#: combinations in which one guard has to outdo what another lets through
+TOGETHER = [
+    {"BRDF_V": "V_KELEMEN", "BRDF_D": "D_ONE_MINUS"},
+    {"BRDF_V": "V_KELEMEN", "BRDF_D": "D_EXERCISE", "BRDF_MULTI": "MULTI_FITTED"},
+    {"BRDF_V": "V_SEPARABLE", "BRDF_D": "D_EXERCISE", "BRDF_MULTI": "MULTI_FITTED"},
+    {"BRDF_V": "V_HAMMON", "BRDF_D": "D_EXERCISE"},
+]
+
+
 @functools.cache
 def middle():
     """l, v, n, albedo, metalness, roughness, float32: roughness 0.5 and above, cosines 0.1 and above."""
@@ -54,7 +63,7 @@ def assert_is_its_terms(brdf, macros):
     np.testing.assert_allclose(got, want, rtol=TOLERANCE + more, atol=0)
 
 
-@pytest.mark.parametrize("rung", [{}, *SINGLE, *PRESETS], ids=name)
+@pytest.mark.parametrize("rung", [{}, *SINGLE, *PRESETS, *TOGETHER], ids=name)
 def test_a_rung_or_preset_is_the_sum_of_its_terms(library, mode, rung):
     assert_is_its_terms(library("brdf.glsl", mode, **rung), rung)
 
@@ -133,15 +142,6 @@ def beyond():
         [0, 0, 1],
         {"albedo": [1, 1, 1], "metalness": metalness, "roughness": roughness},
     )
-
-
-#: combinations in which one guard has to outdo what another lets through
-TOGETHER = [
-    {"BRDF_V": "V_KELEMEN", "BRDF_D": "D_ONE_MINUS"},
-    {"BRDF_V": "V_KELEMEN", "BRDF_D": "D_EXERCISE", "BRDF_MULTI": "MULTI_FITTED"},
-    {"BRDF_V": "V_SEPARABLE", "BRDF_D": "D_EXERCISE", "BRDF_MULTI": "MULTI_FITTED"},
-    {"BRDF_V": "V_HAMMON", "BRDF_D": "D_EXERCISE"},
-]
 
 
 @pytest.mark.parametrize("inputs", [everywhere, beyond], ids=lambda f: f.__name__)
