@@ -71,7 +71,7 @@ def _checked(workers: dict[str, Worker], count: int, folder: Path, errors: dict)
         else:
             apart = disagreement(result, reference)
             if apart > TOLERANCE:
-                errors[name] = WorkerError(f"DISAGREES with the harness by {apart:.2g}, not within {TOLERANCE:g}")
+                errors[name] = WorkerError(f"DISAGREES with the harness by {apart:.2g}, not within {TOLERANCE:.2g}")
                 del workers[name]
             else:
                 yield name, f"agrees within {apart:.1e}" if apart else "agrees exactly"
