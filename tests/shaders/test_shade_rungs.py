@@ -232,3 +232,18 @@ def test_Kelemens_highlight_is_his_until_its_end(library, mode):
     want = np.minimum((a / (a**2 + 1e-26)) ** 2 / np.pi / (4 * cosine), 1e37)
     assert (want == 1e37).any() and (want < 1e36).any()
     np.testing.assert_allclose(got, want, rtol=100 * U)
+
+
+def test_half_precisions_highlight_tells_its_cosines(library, mode):
+    """In 0...1, also behind the surface and of vectors that rounding made too long."""
+    highlight = library("brdf.glsl", mode, BRDF_D="D_HALF").highlight
+    long = np.float32([0, 0, 1.0000001])
+    for l, v, n, NoL, NoV in (  # noqa: E741
+        ([0, 0.8, 0.6], [0.6, 0, 0.8], [0, 0, 1], 0.6, 0.8),
+        ([0, 0.6, 0.8], [0, 0.8, -0.6], [0, 0, 1], 0.8, 0),
+        ([0, 0.8, -0.6], [0, 0.6, 0.8], [0, 0, 1], 0, 0.8),
+        (long, long, long, 1, 1),
+    ):
+        _, g = highlight(np.float32(l), np.float32(v), n, 0.25)
+        np.testing.assert_allclose([g.NoL, g.NoV], [NoL, NoV], rtol=2 * U, atol=0)
+        np.testing.assert_allclose(g.c2, np.float64(g.c) ** 2, rtol=2 * U)
